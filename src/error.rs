@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Every way in which Rarefy can fail. Each message names the place and, where there is one, the remedy.
+
+use std::path::PathBuf;
+
+/// The result of everything in this library that can fail.
+pub type Result<T> = std::result::Result<T, Error>;
+
+/// What went wrong, where, and what to do about it.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// A file could not be read or written.
+    #[error("{path}: {source}", path = path.display())]
+    Io {
+        /// The file or folder.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// A text file (OBJ, MTL, `view.json`, profile) breaks its format at a known line.
+    #[error("{path}:{line}: {message}", path = path.display())]
+    Syntax {
+        /// The file.
+        path: PathBuf,
+        /// The line, from 1.
+        line: usize,
+        /// What is wrong and what would be right.
+        message: String,
+    },
+    /// A scene (or a part of it) is readable but makes no sense.
+    #[error("{place}: {message}")]
+    InvalidScene {
+        /// The file and key, or the scene's name.
+        place: String,
+        /// What is wrong and what would be right.
+        message: String,
+    },
+    /// A picture file could not be decoded or encoded.
+    #[error("{path}: {message}", path = path.display())]
+    Image {
+        /// The picture file.
+        path: PathBuf,
+        /// What is wrong with it.
+        message: String,
+    },
+    /// An option's value is out of its range.
+    #[error("{option}: {message}")]
+    InvalidOption {
+        /// The option as the user wrote it, such as `--size`.
+        option: String,
+        /// The value, the range and the remedy.
+        message: String,
+    },
+    /// Something needs more memory or larger sizes than a limit allows.
+    #[error("{what} needs {wanted}, the limit `{limit}` allows {allowed}{remedy}", remedy = if remedy.is_empty() { String::new() } else { format!(" ({remedy})") })]
+    LimitExceeded {
+        /// What asked for it.
+        what: String,
+        /// The name of the limit: an OpenCL query, or an option.
+        limit: String,
+        /// What was asked for, with its unit.
+        wanted: String,
+        /// What is allowed, with its unit.
+        allowed: String,
+        /// How to stay within the limit; may be empty.
+        remedy: String,
+    },
+    /// No OpenCL library, platform or device could be used.
+    #[error("no usable OpenCL device: {}; use --device cpu for the CPU twin", tried.join("; "))]
+    NoOpenCl {
+        /// Each thing that was tried and why it did not do.
+        tried: Vec<String>,
+    },
+    /// An OpenCL call failed.
+    #[error("{call} failed: {name} ({code})")]
+    OpenCl {
+        /// The OpenCL call.
+        call: String,
+        /// The error code's name in the OpenCL headers.
+        name: String,
+        /// The error code.
+        code: i32,
+    },
+    /// A kernel did not build.
+    #[error("kernel program `{program}` does not build on {device}:\n{log}")]
+    KernelBuild {
+        /// The program, named after its stages.
+        program: String,
+        /// The device and its driver version.
+        device: String,
+        /// The compiler's log, with kernel files and lines.
+        log: String,
+    },
+    /// A device computes wrong results.
+    #[error("self-test failed on {device}: {stage}: {message}")]
+    SelfTest {
+        /// The device and its driver version.
+        device: String,
+        /// The stage that failed.
+        stage: String,
+        /// What differed.
+        message: String,
+    },
+}
+
+impl Error {
+    /// An [`Error::Io`] at `path`.
+    pub fn io(path: impl Into<PathBuf>, source: std::io::Error) -> Self {
+        Error::Io { path: path.into(), source }
+    }
+
+    /// An [`Error::InvalidScene`] at `place`.
+    pub fn scene(place: impl Into<String>, message: impl Into<String>) -> Self {
+        Error::InvalidScene { place: place.into(), message: message.into() }
+    }
+
+    /// An [`Error::InvalidOption`] for `option`.
+    pub fn option(option: impl Into<String>, message: impl Into<String>) -> Self {
+        Error::InvalidOption { option: option.into(), message: message.into() }
+    }
+}

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! The kd-tree over a scene's triangles, in the very bytes that kernels read.
+//!
+//! A node is 8 bytes, two words. Second word: bits 0-1 hold the split axis (0 x, 1 y, 2 z) or [`LEAF`]; bits 2-31 hold
+//! the index of the lower child (the upper child follows it) or, in a leaf, the number of triangles. First word: the
+//! split position as a float, or, in a leaf, the index of its first entry in [`KdTree::leaf_triangles`].
+
+/// The value of a node's axis bits that marks a leaf.
+pub const LEAF: u32 = 3;
+
+/// Deepest tree the builder makes; traversal stacks have this many entries. Reaches kernels as a build option.
+pub const MAX_DEPTH: usize = 48;
+
+/// A node, as in `kernels/common/kdtree.clh`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct KdNode {
+    /// Split position (float bits), or index of the first leaf entry.
+    pub split_or_first: u32,
+    /// Axis or [`LEAF`] in bits 0-1; lower child's index or triangle count above.
+    pub axis_and_payload: u32,
+}
+
+const _: () = assert!(size_of::<KdNode>() == 8);
+
+/// A kd-tree over triangles.
+#[derive(Debug, Clone, Default)]
+pub struct KdTree {
+    /// Nodes; the root is node 0, children are adjacent pairs. Index 1 is unused so that pairs are 16-byte aligned.
+    pub nodes: Vec<KdNode>,
+    /// Triangle ids of all leaves, leaf by leaf, ascending within a leaf.
+    pub leaf_triangles: Vec<u32>,
+    /// Lower corner of the box around all triangles, widened so that every triangle lies strictly inside.
+    pub bounds_min: [f32; 3],
+    /// Upper corner of that box.
+    pub bounds_max: [f32; 3],
+}

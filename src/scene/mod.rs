@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! What is drawn: triangles, objects, materials, textures, and the view (camera, lights, environment).
+//!
+//! A [`Scene`] is plain data in scene units, valid by construction: every index is in range, every number is finite,
+//! and it has at least one triangle with an area. [`load`] makes one from files; [`crate::builtin`] from parameters.
+
+use glam::{Vec2, Vec3};
+
+/// Object id of "no hit": an object of its own (paper section 3, `OID`).
+pub const NO_OBJECT: u32 = u32::MAX;
+
+/// Most lights a scene may have: one bit each in a 32-bit word of shadow flags.
+pub const MAX_LIGHTS: usize = 32;
+
+/// Everything that is drawn, and how it is looked at.
+#[derive(Debug, Clone, Default)]
+pub struct Scene {
+    /// Short name: the folder's or file's, or the built-in scene's.
+    pub name: String,
+    /// Vertex positions, in scene units.
+    pub positions: Vec<Vec3>,
+    /// Three indices into `positions` for each triangle. Triangle ids everywhere are indices into this list.
+    pub triangles: Vec<[u32; 3]>,
+    /// Shading normals at the three corners of each triangle, packed by [`crate::math::pack_normal`].
+    pub corner_normals: Vec<[u32; 3]>,
+    /// Texture coordinates at the three corners of each triangle (0 where the file has none); not wrapped.
+    /// `t` runs upwards, as in OBJ files.
+    pub corner_texcoords: Vec<[Vec2; 3]>,
+    /// The object of each triangle: an index into `objects`.
+    pub triangle_objects: Vec<u32>,
+    /// Objects: what the similarity test G1 tells apart.
+    pub objects: Vec<Object>,
+    /// Materials; never empty (index 0 may be the default material).
+    pub materials: Vec<Material>,
+    /// Textures that materials refer to.
+    pub textures: Vec<Texture>,
+    /// Camera, lights and environment.
+    pub view: View,
+    /// Things that were mended or left out while loading, one sentence each, with their place.
+    pub warnings: Vec<String>,
+}
+
+/// One object: an OBJ object or group in one material.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Object {
+    /// Name of the OBJ object or group.
+    pub name: String,
+    /// Index into [`Scene::materials`].
+    pub material: u32,
+}
+
+/// How the surface treats a ray.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Surface {
+    /// Diffuse and highlight only.
+    #[default]
+    Opaque,
+    /// Reflects with weight `specular`; own colour is `diffuse * (1 - max(specular))`.
+    Mirror,
+    /// Refracts and reflects by Fresnel's equations; closed surfaces with `index_of_refraction` inside.
+    Glass,
+    /// A pane without thickness: reflects by Fresnel's equations, lets the rest through unbent.
+    ThinGlass,
+}
+
+/// A surface material, from MTL and the name lists of `view.json`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Material {
+    /// Name in the MTL file.
+    pub name: String,
+    /// `Kd`, linear RGB; multiplies the texture where there is one.
+    pub diffuse: Vec3,
+    /// `Ks`, linear RGB.
+    pub specular: Vec3,
+    /// `Ns`: Blinn-Phong exponent, at least 0.
+    pub shininess: f32,
+    /// `Tf`, linear RGB: colour of light that passes through glass.
+    pub transmission: Vec3,
+    /// `Ni`: index of refraction, at least 1.
+    pub index_of_refraction: f32,
+    /// How rays are treated.
+    pub surface: Surface,
+    /// `map_Kd`: index into [`Scene::textures`].
+    pub diffuse_texture: Option<u32>,
+    /// `map_d` of an alpha-masked material: texels below one half are holes. Index into [`Scene::textures`].
+    pub cutout_texture: Option<u32>,
+}
+
+impl Default for Material {
+    /// Light grey and matte: what faces without a material get.
+    fn default() -> Self {
+        Material {
+            name: "(default)".into(),
+            diffuse: Vec3::splat(0.7),
+            specular: Vec3::ZERO,
+            shininess: 1.0,
+            transmission: Vec3::ONE,
+            index_of_refraction: 1.5,
+            surface: Surface::Opaque,
+            diffuse_texture: None,
+            cutout_texture: None,
+        }
+    }
+}
+
+/// A picture on a surface.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Texture {
+    /// File name as the MTL file gives it.
+    pub name: String,
+    /// Width in texels, at least 1.
+    pub width: u32,
+    /// Height in texels, at least 1.
+    pub height: u32,
+    /// One word a texel, rows from the top: red in the lowest byte, then green, blue, alpha; sRGB.
+    /// For a cut-out texture the opacity is in alpha.
+    pub texels: Vec<u32>,
+}
+
+/// How the scene is looked at: the contents of `view.json`, checked.
+#[derive(Debug, Clone, PartialEq)]
+pub struct View {
+    /// The camera.
+    pub camera: Camera,
+    /// Point lights, at most [`MAX_LIGHTS`].
+    pub lights: Vec<Light>,
+    /// Ambient light, linear RGB; multiplies `diffuse`.
+    pub ambient: Vec3,
+    /// What a ray that hits nothing sees, linear RGB.
+    pub background: Vec3,
+    /// Size of the room in scene units: the length that `--t-pos` is relative to.
+    pub extent: f32,
+}
+
+impl Default for View {
+    fn default() -> Self {
+        View { camera: Camera::default(), lights: Vec::new(), ambient: Vec3::splat(0.12), background: Vec3::ZERO, extent: 1.0 }
+    }
+}
+
+/// A pinhole camera, right-handed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Camera {
+    /// Position in scene units.
+    pub eye: Vec3,
+    /// A point in the middle of the picture; differs from `eye`.
+    pub look_at: Vec3,
+    /// Roughly upwards; not parallel to the line of sight.
+    pub up: Vec3,
+    /// Vertical field of view in degrees, above 0 and below 180.
+    pub fov_y_degrees: f32,
+}
+
+impl Default for Camera {
+    fn default() -> Self {
+        Camera { eye: Vec3::ZERO, look_at: Vec3::NEG_Z, up: Vec3::Y, fov_y_degrees: 45.0 }
+    }
+}
+
+/// A point light whose light falls off with the square of the distance.
+///
+/// Reflected radiance is `diffuse * intensity * cos / distance^2`, without a further factor of pi.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Light {
+    /// Position in scene units.
+    pub position: Vec3,
+    /// Linear RGB times squared scene units.
+    pub intensity: Vec3,
+}
