@@ -5,10 +5,18 @@
 //! OpenCL 1.2 kernels and a CPU twin of every kernel. Data flows one way:
 //! scene files -> [`scene::Scene`] -> [`kdtree::KdTree`] -> device buffers -> stages -> frame -> PNG.
 
+pub mod backend;
+pub mod camera;
 pub mod error;
 pub mod kdtree;
+pub mod layout;
 pub mod math;
+pub mod options;
+pub mod pipeline;
 pub mod scene;
+pub mod scene_buffers;
+pub mod stage;
+pub mod twin;
 
 pub use error::{Error, Result};
 pub use scene::Scene;

@@ -134,7 +134,13 @@ pub struct View {
 
 impl Default for View {
     fn default() -> Self {
-        View { camera: Camera::default(), lights: Vec::new(), ambient: Vec3::splat(0.12), background: Vec3::ZERO, extent: 1.0 }
+        View {
+            camera: Camera::default(),
+            lights: Vec::new(),
+            ambient: Vec3::splat(0.12),
+            background: Vec3::ZERO,
+            extent: 1.0,
+        }
     }
 }
 

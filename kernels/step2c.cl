@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// step2c (paper, Step II-c): trace and shade the packed A1 pixels, as step1 does for base pixels.
+// Inputs: frame, scene, list[list_offset .. list_offset + item_count). Outputs: attribute planes, class TRACED, colour.
+// Invariant: exactly the listed pixels are written. Cost: one ray tree per item.
+// Twin: src/twin/step2c.rs.
+#include "types.h"
+#include "common/trace.clh"
+
+__kernel void step2c(SCENE_PARAMS, const StepParams step, __global const uint *list, __global uint *out_attributes,
+                     __global uint *out_color, __global uint *out_counters) {
+  const uint item = get_global_id(0);
+  if (item >= step.item_count) return;
+  const uint pixel = list[step.list_offset + item];
+  trace_pixel(SCENE_ARGS, pixel & 0xffffu, pixel >> 16, CLASS_TRACED, step.flags | STEP_STORE, out_attributes,
+              out_color, out_counters);
+}

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! The CPU twin as a back end.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use super::{Backend, BackendInfo, BufferSizes, FrameBuffer};
+use crate::error::Result;
+use crate::layout::{FrameParams, StepParams};
+use crate::scene_buffers::{SceneBuffers, Shading};
+use crate::stage::Kernel;
+use crate::twin::{self, FrameBuffers, SceneArgs, Words};
+
+/// Runs every kernel's twin on the cores of this machine.
+pub struct TwinBackend {
+    scene: Arc<SceneBuffers>,
+    frame: Option<FrameParams>,
+    sizes: Option<BufferSizes>,
+    buffers: FrameBuffers,
+    timings: Vec<(Kernel, f64)>,
+    peak_bytes: u64,
+}
+
+impl TwinBackend {
+    /// A back end for `scene`.
+    pub fn new(scene: Arc<SceneBuffers>) -> Self {
+        let peak_bytes = scene.bytes();
+        TwinBackend {
+            scene,
+            frame: None,
+            sizes: None,
+            buffers: FrameBuffers::default(),
+            timings: Vec::new(),
+            peak_bytes,
+        }
+    }
+
+    fn buffer(&self, buffer: FrameBuffer) -> &Words {
+        match buffer {
+            FrameBuffer::Attributes => &self.buffers.attributes,
+            FrameBuffer::Counters => &self.buffers.counters,
+            FrameBuffer::Color => &self.buffers.color,
+            FrameBuffer::List => &self.buffers.list,
+            FrameBuffer::Masks => &self.buffers.masks,
+            FrameBuffer::Sums => &self.buffers.sums,
+        }
+    }
+}
+
+/// The scene's arrays as arguments of twin functions.
+pub fn scene_args<'a>(scene: &'a SceneBuffers, frame: &'a FrameParams) -> SceneArgs<'a> {
+    SceneArgs {
+        frame,
+        lights: &scene.lights,
+        nodes: &scene.tree.nodes,
+        leaf_triangles: &scene.tree.leaf_triangles,
+        triangles: &scene.triangles,
+        triangle_shading: &scene.triangle_shading,
+        materials: &scene.materials,
+        object_materials: &scene.object_materials,
+        textures: &scene.textures,
+        texels: &scene.texels,
+        tables: &scene.tables,
+        anchor: scene.shading == Shading::Anchor,
+    }
+}
+
+impl Backend for TwinBackend {
+    fn info(&self) -> BackendInfo {
+        BackendInfo {
+            name: format!("CPU twin, {} threads", rayon::current_num_threads()),
+            version: env!("CARGO_PKG_VERSION").into(),
+            backend: "cpu",
+            profile: "none".into(),
+        }
+    }
+
+    fn scan_group(&self) -> u32 {
+        256
+    }
+
+    fn begin(&mut self, frame: &FrameParams, sizes: &BufferSizes) -> Result<()> {
+        if self.sizes != Some(*sizes) {
+            self.buffers = FrameBuffers {
+                attributes: Words::zeroed(sizes.attributes),
+                counters: Words::zeroed(sizes.counters),
+                color: Words::zeroed(sizes.color),
+                list: Words::zeroed(sizes.list),
+                masks: Words::zeroed(sizes.masks),
+                sums: Words::zeroed(sizes.sums),
+            };
+            self.sizes = Some(*sizes);
+            self.peak_bytes = self.peak_bytes.max(self.scene.bytes() + sizes.bytes());
+        }
+        self.frame = Some(*frame);
+        Ok(())
+    }
+
+    fn run(&mut self, kernel: Kernel, step: &StepParams) -> Result<()> {
+        let Some(frame) = &self.frame else { return Ok(()) };
+        let started = Instant::now();
+        twin::run(kernel, &scene_args(&self.scene, frame), step, &self.buffers);
+        self.timings.push((kernel, started.elapsed().as_secs_f64() * 1e3));
+        Ok(())
+    }
+
+    fn read_sum(&mut self, at: u32) -> Result<u32> {
+        Ok(self.buffers.sums.get(at))
+    }
+
+    fn read(&mut self, buffer: FrameBuffer, range: std::ops::Range<usize>) -> Result<Vec<u32>> {
+        Ok(self.buffer(buffer).to_vec(range))
+    }
+
+    fn write(&mut self, buffer: FrameBuffer, words: &[u32]) -> Result<()> {
+        let target = self.buffer(buffer);
+        for (at, &word) in words.iter().enumerate() {
+            target.set(at as u32, word);
+        }
+        Ok(())
+    }
+
+    fn take_timings(&mut self) -> Result<Vec<(Kernel, f64)>> {
+        Ok(std::mem::take(&mut self.timings))
+    }
+
+    fn peak_bytes(&self) -> u64 {
+        self.peak_bytes
+    }
+}

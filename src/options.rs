@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! What a frame may be asked for.
+
+use crate::error::{Error, Result};
+use crate::layout::*;
+
+/// Which pixels get rays.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Mode {
+    /// Every pixel.
+    Full,
+    /// The method: base pixels, and those whose checks fail.
+    #[default]
+    Adaptive,
+}
+
+/// What post-correction compares.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Correction {
+    /// No post-correction.
+    Off,
+    /// Object ids.
+    Object,
+    /// Object ids and shadow bits, as in the paper's pictures.
+    #[default]
+    ObjectAndShadow,
+}
+
+/// How post-correction spreads.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum CorrectionMethod {
+    /// Packed rounds until nothing changes: the least fixed point of the paper's rule.
+    #[default]
+    Converged,
+    /// The paper's single round: rows there and back, then columns.
+    Sweeps,
+}
+
+/// Where between its references an interpolated pixel lies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Interpolation {
+    /// Midway on the screen: exact on planes.
+    #[default]
+    Perspective,
+    /// Midway in space, as in the paper.
+    Plain,
+}
+
+/// A similarity test (paper, "similarity checks").
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Test {
+    /// Same object.
+    G1,
+    /// Close positions.
+    G2,
+    /// Similar normals.
+    G3,
+    /// No fluctuation between them.
+    G4,
+    /// Same repetition of the texture.
+    Tx,
+    /// Same shadow bits.
+    Sh,
+    /// Similar reflected colours.
+    Gc,
+}
+
+impl Test {
+    /// All tests in the order of the fail mask.
+    pub const ALL: [Test; 7] = [Test::G1, Test::G2, Test::G3, Test::G4, Test::Tx, Test::Sh, Test::Gc];
+
+    /// The paper's name in lower case, as on the command line.
+    pub fn name(self) -> &'static str {
+        ["g1", "g2", "g3", "g4", "tx", "sh", "gc"][self as usize]
+    }
+
+    /// The test's bit in the class plane.
+    pub fn fail_bit(self) -> u32 {
+        FAIL_G1 << self as u32
+    }
+
+    /// The test called `name`, in any case.
+    pub fn from_name(name: &str) -> Option<Test> {
+        Test::ALL.into_iter().find(|t| t.name().eq_ignore_ascii_case(name))
+    }
+}
+
+/// Tolerances of the checks at one level of blocks.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tolerances {
+    /// G2: largest distance, as a share of the scene's extent.
+    pub t_pos: f32,
+    /// G3: least dot product of the normals.
+    pub t_norm: f32,
+    /// G4: sine of the slope below which a surface counts as flat.
+    pub t_conv: f32,
+    /// TX: how near to the border of its repetition a coordinate counts as "at the border".
+    pub t_tex: f32,
+    /// GC: largest distance of the reflected colours.
+    pub t_gcol: f32,
+}
+
+impl Tolerances {
+    /// The tolerances of every published result (paper; `t_conv` is ours).
+    pub const PAPER: Tolerances = Tolerances { t_pos: 0.03, t_norm: 0.9, t_conv: 0.05, t_tex: 0.3, t_gcol: 0.15 };
+}
+
+impl Default for Tolerances {
+    fn default() -> Self {
+        Tolerances::PAPER
+    }
+}
+
+/// Everything that decides how a frame is drawn.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RenderOptions {
+    /// Width in pixels, 1 to [`crate::camera::MAX_SIDE`].
+    pub width: u32,
+    /// Height in pixels, likewise.
+    pub height: u32,
+    /// Which pixels get rays.
+    pub mode: Mode,
+    /// Side of the base blocks: 2 (paper) or 4.
+    pub block: u32,
+    /// Most secondary rays in a chain, 0 to 64.
+    pub depth: u32,
+    /// What post-correction compares.
+    pub correction: Correction,
+    /// How post-correction spreads.
+    pub correction_method: CorrectionMethod,
+    /// Where interpolated pixels lie.
+    pub interpolation: Interpolation,
+    /// Tolerances of the finest level (references two pixels apart).
+    pub tolerances: Tolerances,
+    /// Tolerances of the coarse level of blocks of 4 (references four pixels apart).
+    pub coarse_tolerances: Tolerances,
+    /// Compare reflected colours linearly, not by their square roots.
+    pub gcol_linear: bool,
+    /// Bits of the tests that are switched on: `FAIL_*`.
+    pub tests: u32,
+}
+
+impl Default for RenderOptions {
+    fn default() -> Self {
+        RenderOptions {
+            width: 1024,
+            height: 1024,
+            mode: Mode::default(),
+            block: 2,
+            depth: 4,
+            correction: Correction::default(),
+            correction_method: CorrectionMethod::default(),
+            interpolation: Interpolation::default(),
+            tolerances: Tolerances::default(),
+            coarse_tolerances: Tolerances::default(),
+            gcol_linear: false,
+            tests: FAIL_ALL,
+        }
+    }
+}
+
+impl RenderOptions {
+    /// Checks every value against its range.
+    ///
+    /// # Errors
+    /// [`Error::InvalidOption`] with the option, the value and the range.
+    pub fn validate(&self) -> Result<()> {
+        let max = crate::camera::MAX_SIDE;
+        if !(1..=max).contains(&self.width) || !(1..=max).contains(&self.height) {
+            return Err(Error::option(
+                "--size",
+                format!("{}x{} is out of range; each side may be 1 to {max} pixels", self.width, self.height),
+            ));
+        }
+        if !matches!(self.block, 2 | 4) {
+            return Err(Error::option("--blocks", format!("{} is not 2 or 4", self.block)));
+        }
+        if self.depth > 64 {
+            return Err(Error::option("--depth", format!("{} is above 64", self.depth)));
+        }
+        for t in [&self.tolerances, &self.coarse_tolerances] {
+            let ranges = [
+                ("--t-pos", t.t_pos, 0.0, f32::MAX),
+                ("--t-norm", t.t_norm, -1.0, 2.0),
+                ("--t-conv", t.t_conv, 0.0, 1.0),
+                ("--t-tex", t.t_tex, 0.0, 1.0),
+                ("--t-gcol", t.t_gcol, 0.0, f32::MAX),
+            ];
+            for (option, value, lo, hi) in ranges {
+                if !(lo..=hi).contains(&value) {
+                    return Err(Error::option(option, format!("{value} is out of range; it may be {lo} to {hi}")));
+                }
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! A frame, step by step, as the paper tells it. The same sequence drives every back end.
+
+use crate::backend::Backend;
+use crate::error::Result;
+use crate::layout::*;
+use crate::options::{Correction, CorrectionMethod, Interpolation, RenderOptions, Tolerances};
+use crate::stage::Kernel;
+use crate::twin::planes::plane_index;
+
+/// How many pixels of a frame went which way.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct PixelCounts {
+    /// Traced in step1.
+    pub base: u64,
+    /// Traced in step2c and step3c.
+    pub traced: u64,
+    /// Rebuilt from their references, and left so.
+    pub interpolated: u64,
+    /// Traced in step4, changed or confirmed.
+    pub corrected: u64,
+}
+
+/// A class of adaptive pixels: its grid, and where the two references of each pixel lie.
+struct AdaptiveGrid {
+    check: Kernel,
+    pack: PackKernels,
+    trace: Kernel,
+    params: StepParams,
+}
+
+struct PackKernels {
+    count: Kernel,
+    scan: Kernel,
+    scatter: Kernel,
+}
+
+const STEP2B: PackKernels =
+    PackKernels { count: Kernel::Step2bCount, scan: Kernel::Step2bScan, scatter: Kernel::Step2bScatter };
+const STEP3B: PackKernels =
+    PackKernels { count: Kernel::Step3bCount, scan: Kernel::Step3bScan, scatter: Kernel::Step3bScatter };
+const STEP4: PackKernels =
+    PackKernels { count: Kernel::Step4Count, scan: Kernel::Step4Scan, scatter: Kernel::Step4Scatter };
+
+/// Traces every pixel: step1's kernel at stride 1. `store` keeps the attributes of all pixels.
+///
+/// # Errors
+/// Whatever the back end reports.
+pub fn full_frame(backend: &mut dyn Backend, frame: &FrameParams, store: bool) -> Result<PixelCounts> {
+    let flags = if store { STEP_STORE } else { 0 };
+    let step = StepParams { flags, ..grid(frame, (0, 0), (1, 1)) };
+    backend.run(Kernel::Step1, &step)?;
+    Ok(PixelCounts { base: u64::from(frame.width) * u64::from(frame.height), ..PixelCounts::default() })
+}
+
+/// The method: trace the base pixels, rebuild or trace the others, correct.
+///
+/// # Errors
+/// Whatever the back end reports.
+pub fn adaptive_frame(
+    backend: &mut dyn Backend,
+    frame: &FrameParams,
+    options: &RenderOptions,
+    extent: f32,
+) -> Result<PixelCounts> {
+    let block = frame.block;
+    let base = grid(frame, (0, 0), (block, block));
+    backend.run(Kernel::Step1, &StepParams { flags: STEP_STORE, ..base })?;
+
+    let mut traced = 0;
+    let mut stride = block;
+    while stride >= 2 {
+        for class in adaptive_grids(frame, stride, options, extent) {
+            backend.run(class.check, &class.params)?;
+            let count = pack_grid(backend, &class, traced)?;
+            let list = StepParams { list_offset: traced, item_count: count, ..class.params };
+            run_list(backend, class.trace, &list)?;
+            traced += count;
+        }
+        stride /= 2;
+    }
+
+    let corrected = correct(backend, frame, options, traced)?;
+    let base = u64::from(base.grid_width) * u64::from(base.grid_height);
+    let pixels = u64::from(frame.width) * u64::from(frame.height);
+    let (traced, corrected) = (u64::from(traced), u64::from(corrected));
+    Ok(PixelCounts { base, traced, corrected, interpolated: pixels - base - traced - corrected })
+}
+
+/// The grid of the pixels `origin + step * item` within the frame.
+fn grid(frame: &FrameParams, origin: (u32, u32), step: (u32, u32)) -> StepParams {
+    StepParams {
+        origin_x: origin.0,
+        origin_y: origin.1,
+        step_x: step.0,
+        step_y: step.1,
+        grid_width: frame.width.saturating_sub(origin.0).div_ceil(step.0),
+        grid_height: frame.height.saturating_sub(origin.1).div_ceil(step.1),
+        ..bytemuck::Zeroable::zeroed()
+    }
+}
+
+/// The two classes of adaptive pixels at one stride: A1 between two references in a row, A2 between two in a column.
+fn adaptive_grids(frame: &FrameParams, stride: u32, options: &RenderOptions, extent: f32) -> [AdaptiveGrid; 2] {
+    let half = stride / 2;
+    let tolerances = if stride == 2 { &options.tolerances } else { &options.coarse_tolerances };
+    let step2 = StepParams { reference_dx: half, ..grid(frame, (half, 0), (stride, stride)) };
+    let step3 = StepParams { reference_dy: half, ..grid(frame, (0, half), (half, stride)) };
+    [
+        AdaptiveGrid {
+            check: Kernel::Step2a,
+            pack: STEP2B,
+            trace: Kernel::Step2c,
+            params: with_checks(step2, tolerances, options, extent),
+        },
+        AdaptiveGrid {
+            check: Kernel::Step3a,
+            pack: STEP3B,
+            trace: Kernel::Step3c,
+            params: with_checks(step3, tolerances, options, extent),
+        },
+    ]
+}
+
+fn with_checks(step: StepParams, tolerances: &Tolerances, options: &RenderOptions, extent: f32) -> StepParams {
+    let perspective = if options.interpolation == Interpolation::Perspective { STEP_PERSPECTIVE } else { 0 };
+    let gcol_linear = if options.gcol_linear { STEP_GCOL_LINEAR } else { 0 };
+    StepParams {
+        t_pos: tolerances.t_pos * extent,
+        t_norm: tolerances.t_norm,
+        t_conv: tolerances.t_conv,
+        t_tex: tolerances.t_tex,
+        t_gcol: tolerances.t_gcol,
+        tests: options.tests,
+        flags: STEP_STORE | perspective | gcol_linear,
+        ..step
+    }
+}
+
+/// Packs the pixels of a class that wait for rays behind the `list_offset` entries that the list holds already.
+fn pack_grid(backend: &mut dyn Backend, class: &AdaptiveGrid, list_offset: u32) -> Result<u32> {
+    let tiles = class.params.grid_width.div_ceil(PACK_TILE_SIDE) * class.params.grid_height.div_ceil(PACK_TILE_SIDE);
+    let item_count = tiles * PACK_TILE_SIDE * PACK_TILE_SIDE;
+    pack(backend, &class.pack, &StepParams { item_count, list_offset, ..class.params })
+}
+
+/// Packs the wanted ones of `item_count` items by count, scan and scatter; returns how many there are.
+fn pack(backend: &mut dyn Backend, kernels: &PackKernels, step: &StepParams) -> Result<u32> {
+    if step.item_count == 0 {
+        return Ok(0);
+    }
+    let step = StepParams { scan_group: backend.scan_group(), ..*step };
+    backend.run(kernels.count, &step)?;
+    let (mut level, mut sums_offset) = (step.item_count.div_ceil(32), 0);
+    loop {
+        backend.run(kernels.scan, &StepParams { item_count: level, sums_offset, ..step })?;
+        sums_offset += level;
+        level = level.div_ceil(step.scan_group);
+        if level == 1 {
+            break;
+        }
+    }
+    let count = backend.read_sum(sums_offset)?;
+    if count > 0 {
+        backend.run(kernels.scatter, &step)?;
+    }
+    Ok(count)
+}
+
+fn run_list(backend: &mut dyn Backend, kernel: Kernel, step: &StepParams) -> Result<()> {
+    if step.item_count == 0 { Ok(()) } else { backend.run(kernel, step) }
+}
+
+/// step4: spreads from the `traced` listed pixels; returns how many rays it fired.
+fn correct(backend: &mut dyn Backend, frame: &FrameParams, options: &RenderOptions, traced: u32) -> Result<u32> {
+    let flags = match options.correction {
+        Correction::Off => return Ok(0),
+        Correction::Object => STEP_STORE,
+        Correction::ObjectAndShadow => STEP_STORE | STEP_COMPARE_SHADOW,
+    };
+    let step = StepParams { flags, ..bytemuck::Zeroable::zeroed() };
+    match options.correction_method {
+        CorrectionMethod::Converged => correct_converged(backend, &step, traced),
+        CorrectionMethod::Sweeps => correct_by_sweeps(backend, frame, &step),
+    }
+}
+
+/// Rounds of mark, pack and trace, each from the pixels that the last one traced, until none is wanted.
+fn correct_converged(backend: &mut dyn Backend, step: &StepParams, traced: u32) -> Result<u32> {
+    let (mut source_offset, mut sources, mut corrected) = (0, traced, 0);
+    while sources > 0 {
+        let list_offset = source_offset + sources;
+        let round = StepParams { source_offset, list_offset, item_count: 4 * sources, ..*step };
+        backend.run(Kernel::Step4Mark, &round)?;
+        let count = pack(backend, &STEP4, &round)?;
+        run_list(backend, Kernel::Step4Trace, &StepParams { item_count: count, ..round })?;
+        corrected += count;
+        (source_offset, sources) = (list_offset, count);
+    }
+    Ok(corrected)
+}
+
+/// Each row there and back, then each column.
+fn correct_by_sweeps(backend: &mut dyn Backend, frame: &FrameParams, step: &StepParams) -> Result<u32> {
+    backend.run(Kernel::Step4Sweep, &StepParams { step_x: 1, item_count: frame.height, ..*step })?;
+    backend.run(Kernel::Step4Sweep, &StepParams { step_y: 1, item_count: frame.width, ..*step })?;
+    // A sweep lists nothing: its rays are counted from the classes.
+    let pitch = frame.plane_pitch as usize;
+    let at = PLANE_CLASS as usize * pitch;
+    let classes = backend.read(crate::backend::FrameBuffer::Attributes, at..at + pitch)?;
+    let pixels = (0..frame.height).flat_map(|y| (0..frame.width).map(move |x| (x, y)));
+    let is_corrected = |class: u32| matches!(class & CLASS_MASK, CLASS_CORRECTED | CLASS_CONFIRMED);
+    Ok(pixels.filter(|&(x, y)| is_corrected(classes[plane_index(frame, x, y) as usize])).count() as u32)
+}

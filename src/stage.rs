@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! The steps of the method and the kernels that they are made of.
+//!
+//! A step has one name everywhere: the paper's, the kernel file's, the twin's, the enum variant's, the profiler's.
+
+/// A step of the method (paper, Steps I to III-c, and the post-correction as step 4).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Stage {
+    /// Trace the base pixels.
+    Step1,
+    /// Check and interpolate the A1 pixels.
+    Step2a,
+    /// Pack the A1 pixels that need rays.
+    Step2b,
+    /// Trace the packed A1 pixels.
+    Step2c,
+    /// Check and interpolate the A2 pixels.
+    Step3a,
+    /// Pack the A2 pixels that need rays.
+    Step3b,
+    /// Trace the packed A2 pixels.
+    Step3c,
+    /// Post-correction.
+    Step4,
+}
+
+impl Stage {
+    /// All stages in the order of a frame.
+    pub const ALL: [Stage; 8] = [
+        Stage::Step1,
+        Stage::Step2a,
+        Stage::Step2b,
+        Stage::Step2c,
+        Stage::Step3a,
+        Stage::Step3b,
+        Stage::Step3c,
+        Stage::Step4,
+    ];
+
+    /// The stage's one name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Stage::Step1 => "step1",
+            Stage::Step2a => "step2a",
+            Stage::Step2b => "step2b",
+            Stage::Step2c => "step2c",
+            Stage::Step3a => "step3a",
+            Stage::Step3b => "step3b",
+            Stage::Step3c => "step3c",
+            Stage::Step4 => "step4",
+        }
+    }
+}
+
+/// How many work-items a kernel is launched with, and what one of them is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Items {
+    /// One per item of the step's grid: `grid_width` by `grid_height`.
+    Grid,
+    /// One per list entry, source and direction, or line: `item_count`.
+    List,
+    /// One per chunk of 32 of `item_count` items.
+    Chunks,
+    /// Work-groups of `scan_group` that cover `item_count` elements.
+    Groups,
+}
+
+/// A kernel: an entry point of its stage's file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[allow(missing_docs)] // one per entry point; the kernel files document them
+pub enum Kernel {
+    Step1,
+    Step2a,
+    Step2bCount,
+    Step2bScan,
+    Step2bScatter,
+    Step2c,
+    Step3a,
+    Step3bCount,
+    Step3bScan,
+    Step3bScatter,
+    Step3c,
+    Step4Mark,
+    Step4Count,
+    Step4Scan,
+    Step4Scatter,
+    Step4Trace,
+    Step4Sweep,
+}
+
+impl Kernel {
+    /// All kernels in the order of a frame.
+    pub const ALL: [Kernel; 17] = [
+        Kernel::Step1,
+        Kernel::Step2a,
+        Kernel::Step2bCount,
+        Kernel::Step2bScan,
+        Kernel::Step2bScatter,
+        Kernel::Step2c,
+        Kernel::Step3a,
+        Kernel::Step3bCount,
+        Kernel::Step3bScan,
+        Kernel::Step3bScatter,
+        Kernel::Step3c,
+        Kernel::Step4Mark,
+        Kernel::Step4Count,
+        Kernel::Step4Scan,
+        Kernel::Step4Scatter,
+        Kernel::Step4Trace,
+        Kernel::Step4Sweep,
+    ];
+
+    /// The entry point's name in the kernel file.
+    pub fn name(self) -> &'static str {
+        match self {
+            Kernel::Step1 => "step1",
+            Kernel::Step2a => "step2a",
+            Kernel::Step2bCount => "step2b_count",
+            Kernel::Step2bScan => "step2b_scan",
+            Kernel::Step2bScatter => "step2b_scatter",
+            Kernel::Step2c => "step2c",
+            Kernel::Step3a => "step3a",
+            Kernel::Step3bCount => "step3b_count",
+            Kernel::Step3bScan => "step3b_scan",
+            Kernel::Step3bScatter => "step3b_scatter",
+            Kernel::Step3c => "step3c",
+            Kernel::Step4Mark => "step4_mark",
+            Kernel::Step4Count => "step4_count",
+            Kernel::Step4Scan => "step4_scan",
+            Kernel::Step4Scatter => "step4_scatter",
+            Kernel::Step4Trace => "step4_trace",
+            Kernel::Step4Sweep => "step4_sweep",
+        }
+    }
+
+    /// The stage that the kernel belongs to.
+    pub fn stage(self) -> Stage {
+        match self {
+            Kernel::Step1 => Stage::Step1,
+            Kernel::Step2a => Stage::Step2a,
+            Kernel::Step2bCount | Kernel::Step2bScan | Kernel::Step2bScatter => Stage::Step2b,
+            Kernel::Step2c => Stage::Step2c,
+            Kernel::Step3a => Stage::Step3a,
+            Kernel::Step3bCount | Kernel::Step3bScan | Kernel::Step3bScatter => Stage::Step3b,
+            Kernel::Step3c => Stage::Step3c,
+            Kernel::Step4Mark
+            | Kernel::Step4Count
+            | Kernel::Step4Scan
+            | Kernel::Step4Scatter
+            | Kernel::Step4Trace
+            | Kernel::Step4Sweep => Stage::Step4,
+        }
+    }
+
+    /// What its work-items are.
+    pub fn items(self) -> Items {
+        match self {
+            Kernel::Step1 | Kernel::Step2a | Kernel::Step3a => Items::Grid,
+            Kernel::Step2c | Kernel::Step3c | Kernel::Step4Mark | Kernel::Step4Trace | Kernel::Step4Sweep => {
+                Items::List
+            }
+            Kernel::Step2bCount
+            | Kernel::Step3bCount
+            | Kernel::Step4Count
+            | Kernel::Step2bScatter
+            | Kernel::Step3bScatter
+            | Kernel::Step4Scatter => Items::Chunks,
+            Kernel::Step2bScan | Kernel::Step3bScan | Kernel::Step4Scan => Items::Groups,
+        }
+    }
+}

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! The CPU twin of every kernel: the truth that kernels are tested against, and the back end where there is no OpenCL.
+//!
+//! A twin is a function of one work-item (or, for kernels with barriers, one work-group) over the same buffers, written
+//! like the kernel so that the two can be read side by side. [`run`] is the launch: all items of a kernel, in parallel.
+
+pub mod pack;
+pub mod planes;
+pub mod scene_args;
+pub mod shade;
+pub mod similarity;
+mod step1;
+mod step2a;
+mod step2b;
+mod step2c;
+mod step3a;
+mod step3b;
+mod step3c;
+mod step4;
+pub mod trace;
+pub mod traverse;
+
+use rayon::prelude::*;
+
+pub use planes::Words;
+pub use scene_args::SceneArgs;
+
+use crate::layout::StepParams;
+use crate::stage::{Items, Kernel};
+
+/// The buffers of a frame.
+#[derive(Debug, Default)]
+pub struct FrameBuffers {
+    /// Attribute planes (`PLANE_*`), `plane_pitch` words each.
+    pub attributes: Words,
+    /// Counter planes (`COUNTER_*`), `plane_pitch` words each; empty if no counters are kept.
+    pub counters: Words,
+    /// The picture: one sRGB word a pixel, row-major.
+    pub color: Words,
+    /// Packed pixel addresses.
+    pub list: Words,
+    /// Mask words of the packing.
+    pub masks: Words,
+    /// Scan levels of the packing.
+    pub sums: Words,
+}
+
+/// Launches `kernel`: runs its twin for every work-item.
+pub fn run(kernel: Kernel, scene: &SceneArgs, step: &StepParams, buffers: &FrameBuffers) {
+    match kernel.items() {
+        Items::Grid => {
+            let item = match kernel {
+                Kernel::Step1 => step1::step1,
+                Kernel::Step2a => step2a::step2a,
+                Kernel::Step3a => step3a::step3a,
+                _ => unreachable!("kernels over a grid are listed above"),
+            };
+            (0..step.grid_height).into_par_iter().for_each(|gy| {
+                for gx in 0..step.grid_width {
+                    item(scene, step, gx, gy, buffers);
+                }
+            });
+        }
+        Items::List | Items::Chunks | Items::Groups => {
+            let count = match kernel.items() {
+                Items::Chunks => step.item_count.div_ceil(32),
+                Items::Groups => step.item_count.div_ceil(step.scan_group),
+                _ => step.item_count,
+            };
+            (0..count).into_par_iter().with_min_len(16).for_each(|i| item_1d(kernel, scene, step, i, buffers));
+        }
+    }
+}
+
+/// One work-item (or group) of a one-dimensional kernel. Exhaustive: a kernel without a twin does not compile.
+fn item_1d(kernel: Kernel, scene: &SceneArgs, step: &StepParams, i: u32, buffers: &FrameBuffers) {
+    match kernel {
+        Kernel::Step1 | Kernel::Step2a | Kernel::Step3a => unreachable!("kernels over a grid run in two dimensions"),
+        Kernel::Step2bCount => step2b::step2b_count(scene, step, i, buffers),
+        Kernel::Step2bScan => step2b::step2b_scan(step, i, buffers),
+        Kernel::Step2bScatter => step2b::step2b_scatter(step, i, buffers),
+        Kernel::Step2c => step2c::step2c(scene, step, i, buffers),
+        Kernel::Step3bCount => step3b::step3b_count(scene, step, i, buffers),
+        Kernel::Step3bScan => step3b::step3b_scan(step, i, buffers),
+        Kernel::Step3bScatter => step3b::step3b_scatter(step, i, buffers),
+        Kernel::Step3c => step3c::step3c(scene, step, i, buffers),
+        Kernel::Step4Mark => step4::step4_mark(scene, step, i, buffers),
+        Kernel::Step4Count => step4::step4_count(scene, step, i, buffers),
+        Kernel::Step4Scan => step4::step4_scan(step, i, buffers),
+        Kernel::Step4Scatter => step4::step4_scatter(scene, step, i, buffers),
+        Kernel::Step4Trace => step4::step4_trace(scene, step, i, buffers),
+        Kernel::Step4Sweep => step4::step4_sweep(scene, step, i, buffers),
+    }
+}

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Twin of `kernels/common/pack.clh` and `pack_order.clh`: packing by a prefix scan.
+
+use super::planes::{Words, plane_index};
+use crate::layout::*;
+
+/// Mask word and flag count of a chunk of 32 items (`PACK_COUNT`).
+pub fn count(chunk: u32, item_count: u32, masks: &Words, sums: &Words, flag: impl Fn(u32) -> bool) {
+    let begin = chunk * 32;
+    if begin >= item_count {
+        return;
+    }
+    let mut mask = 0u32;
+    for k in 0..32.min(item_count - begin) {
+        if flag(begin + k) {
+            mask |= 1 << k;
+        }
+    }
+    masks.set(chunk, mask);
+    sums.set(chunk, mask.count_ones());
+}
+
+/// One work-group of one level of the scan (`pack_scan`).
+pub fn scan(group: u32, step: &StepParams, sums: &Words) {
+    let begin = group * step.scan_group;
+    let end = (begin + step.scan_group).min(step.item_count);
+    let mut total = 0;
+    for element in begin..end {
+        let value = sums.get(step.sums_offset + element);
+        sums.set(step.sums_offset + element, total);
+        total += value;
+    }
+    sums.set(step.sums_offset + step.item_count + group, total);
+}
+
+fn base(step: &StepParams, sums: &Words, chunk: u32, chunk_count: u32) -> u32 {
+    let (mut base, mut offset, mut element, mut count) = (0, 0, chunk, chunk_count);
+    loop {
+        base += sums.get(offset + element);
+        if count <= step.scan_group {
+            return base;
+        }
+        offset += count;
+        element /= step.scan_group;
+        count = count.div_ceil(step.scan_group);
+    }
+}
+
+/// Writes a chunk's wanted pixels to the list (`PACK_SCATTER`).
+pub fn scatter(chunk: u32, step: &StepParams, masks: &Words, sums: &Words, list: &Words, pixel: impl Fn(u32) -> u32) {
+    let chunk_count = step.item_count.div_ceil(32);
+    if chunk >= chunk_count {
+        return;
+    }
+    let mut next = step.list_offset + base(step, sums, chunk, chunk_count);
+    let mask = masks.get(chunk);
+    for k in (0..32).filter(|k| mask >> k & 1 != 0) {
+        list.set(next, pixel(chunk * 32 + k));
+        next += 1;
+    }
+}
+
+/// Grid coordinates of item `i` in packing order: x in the low half word, y in the high one.
+pub fn grid_item(step: &StepParams, i: u32) -> u32 {
+    let tile_columns = step.grid_width.div_ceil(PACK_TILE_SIDE);
+    let (tile, within) = (i / (PACK_TILE_SIDE * PACK_TILE_SIDE), i % (PACK_TILE_SIDE * PACK_TILE_SIDE));
+    let gx = (tile % tile_columns) * PACK_TILE_SIDE + within % PACK_TILE_SIDE;
+    let gy = (tile / tile_columns) * PACK_TILE_SIDE + within / PACK_TILE_SIDE;
+    gx | gy << 16
+}
+
+/// Pixel address of item `i`.
+pub fn grid_item_pixel(step: &StepParams, i: u32) -> u32 {
+    let item = grid_item(step, i);
+    (step.origin_x + step.step_x * (item & 0xffff)) | (step.origin_y + step.step_y * (item >> 16)) << 16
+}
+
+/// Does item `i` lie in the grid, and does its pixel wait for a ray?
+pub fn grid_item_is_pending(frame: &FrameParams, step: &StepParams, attributes: &Words, i: u32) -> bool {
+    let item = grid_item(step, i);
+    if (item & 0xffff) >= step.grid_width || (item >> 16) >= step.grid_height {
+        return false;
+    }
+    let pixel = grid_item_pixel(step, i);
+    let at = plane_index(frame, pixel & 0xffff, pixel >> 16);
+    attributes.get(PLANE_CLASS * frame.plane_pitch + at) & CLASS_MASK == CLASS_PENDING
+}

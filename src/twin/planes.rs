@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Twin of `kernels/common/attributes.clh`: the buffers that stages read and write.
+//!
+//! Words are atomics with relaxed order, so that items may run on any thread without unsafe code; on every platform
+//! that is an ordinary load or store.
+
+use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
+
+use glam::Vec3;
+
+use super::scene_args::{Work, xyz};
+use crate::layout::*;
+
+/// A buffer of 32-bit words that items on any thread may read and write.
+#[derive(Debug, Default)]
+pub struct Words(Vec<AtomicU32>);
+
+impl Words {
+    /// A buffer of zeros.
+    pub fn zeroed(len: usize) -> Self {
+        Words(std::iter::repeat_with(AtomicU32::default).take(len).collect())
+    }
+
+    /// A buffer with the given contents.
+    pub fn from_words(words: &[u32]) -> Self {
+        Words(words.iter().map(|&w| AtomicU32::new(w)).collect())
+    }
+
+    /// Number of words.
+    pub fn len(&self) -> usize {
+        self.0.len()
+    }
+
+    /// Whether there are no words.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// The word at `at`.
+    #[inline]
+    pub fn get(&self, at: u32) -> u32 {
+        self.0[at as usize].load(Relaxed)
+    }
+
+    /// Replaces the word at `at`.
+    #[inline]
+    pub fn set(&self, at: u32, word: u32) {
+        self.0[at as usize].store(word, Relaxed);
+    }
+
+    /// Replaces the word at `at` by the lesser of it and `word`.
+    #[inline]
+    pub fn min(&self, at: u32, word: u32) {
+        self.0[at as usize].fetch_min(word, Relaxed);
+    }
+
+    /// A copy of a range of words.
+    pub fn to_vec(&self, range: std::ops::Range<usize>) -> Vec<u32> {
+        self.0[range].iter().map(|w| w.load(Relaxed)).collect()
+    }
+}
+
+/// What is kept of a pixel's first hit (paper section 3).
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[allow(missing_docs)] // documented in kernels/common/attributes.clh
+pub struct Attributes {
+    pub position: Vec3,
+    pub normal: Vec3,
+    pub s: f32,
+    pub t: f32,
+    pub gcol: Vec3,
+    pub object: u32,
+    pub shadow_bits: u32,
+}
+
+impl Attributes {
+    /// What is kept of a pixel whose ray hits nothing.
+    pub const MISS: Attributes = Attributes {
+        position: Vec3::ZERO,
+        normal: Vec3::ZERO,
+        s: 0.0,
+        t: 0.0,
+        gcol: Vec3::ZERO,
+        object: NO_OBJECT,
+        shadow_bits: 0,
+    };
+}
+
+/// Where pixel `(x, y)` lies within a plane.
+#[inline]
+pub fn plane_index(frame: &FrameParams, x: u32, y: u32) -> u32 {
+    let shift = frame.block >> 1;
+    let mask = frame.block - 1;
+    let phase = ((y & mask) << shift) + (x & mask);
+    (phase * frame.phase_height + (y >> shift)) * frame.phase_width + (x >> shift)
+}
+
+/// Writes all attributes of the pixel at plane index `at`.
+pub fn store_attributes(planes: &Words, pitch: u32, at: u32, a: &Attributes) {
+    let put = |plane: u32, value: f32| planes.set(plane * pitch + at, value.to_bits());
+    put(PLANE_POSITION_X, a.position.x);
+    put(PLANE_POSITION_Y, a.position.y);
+    put(PLANE_POSITION_Z, a.position.z);
+    put(PLANE_NORMAL_X, a.normal.x);
+    put(PLANE_NORMAL_Y, a.normal.y);
+    put(PLANE_NORMAL_Z, a.normal.z);
+    put(PLANE_TEXCOORD_S, a.s);
+    put(PLANE_TEXCOORD_T, a.t);
+    put(PLANE_GCOL_R, a.gcol.x);
+    put(PLANE_GCOL_G, a.gcol.y);
+    put(PLANE_GCOL_B, a.gcol.z);
+    planes.set(PLANE_OBJECT * pitch + at, a.object);
+    planes.set(PLANE_SHADOW * pitch + at, a.shadow_bits);
+}
+
+/// Reads all attributes of the pixel at plane index `at`.
+pub fn load_attributes(planes: &Words, pitch: u32, at: u32) -> Attributes {
+    let get = |plane: u32| f32::from_bits(planes.get(plane * pitch + at));
+    Attributes {
+        position: Vec3::new(get(PLANE_POSITION_X), get(PLANE_POSITION_Y), get(PLANE_POSITION_Z)),
+        normal: Vec3::new(get(PLANE_NORMAL_X), get(PLANE_NORMAL_Y), get(PLANE_NORMAL_Z)),
+        s: get(PLANE_TEXCOORD_S),
+        t: get(PLANE_TEXCOORD_T),
+        gcol: Vec3::new(get(PLANE_GCOL_R), get(PLANE_GCOL_G), get(PLANE_GCOL_B)),
+        object: planes.get(PLANE_OBJECT * pitch + at),
+        shadow_bits: planes.get(PLANE_SHADOW * pitch + at),
+    }
+}
+
+/// Writes the work counters of the pixel at plane index `at`, if counters are kept.
+pub fn store_work(counters: &Words, pitch: u32, at: u32, work: &Work) {
+    if counters.is_empty() {
+        return;
+    }
+    counters.set(COUNTER_TRAVERSAL_STEPS * pitch + at, work.traversal_steps);
+    counters.set(COUNTER_TRIANGLE_TESTS * pitch + at, work.triangle_tests);
+    counters.set(COUNTER_SHADOW_RAYS * pitch + at, work.shadow_rays);
+    counters.set(COUNTER_REFLECTION_RAYS * pitch + at, work.reflection_rays);
+    counters.set(COUNTER_REFRACTION_RAYS * pitch + at, work.refraction_rays);
+    counters.set(COUNTER_SHADED * pitch + at, work.shaded);
+}
+
+/// Direction from the eye through the middle of pixel `(x, y)`; not unit.
+pub fn pixel_direction(frame: &FrameParams, x: u32, y: u32) -> Vec3 {
+    let sx = (2 * x + 1) as f32 / frame.width as f32 - 1.0;
+    let sy = 1.0 - (2 * y + 1) as f32 / frame.height as f32;
+    xyz(frame.forward) + xyz(frame.right) * sx + xyz(frame.up) * sy
+}

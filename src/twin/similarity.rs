@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Twin of `kernels/common/similarity.clh`: the seven checks and the interpolation.
+
+use glam::Vec3;
+
+use super::FrameBuffers;
+use super::planes::{Attributes, load_attributes, plane_index, store_attributes, store_work};
+use super::scene_args::{SceneArgs, Work, xyz};
+use super::shade::{ShadePoint, shade_local, srgb_word};
+use crate::layout::*;
+use crate::math::{clamp, dot, normalize};
+
+fn wraps(a: f32, b: f32, t_tex: f32) -> bool {
+    (a < t_tex && b > 1.0 - t_tex) || (b < t_tex && a > 1.0 - t_tex)
+}
+
+fn gcol_distance(a: Vec3, b: Vec3, flags: u32) -> f32 {
+    let shown = |c: Vec3| {
+        if flags & STEP_GCOL_LINEAR != 0 {
+            return c;
+        }
+        Vec3::new(clamp(c.x, 0.0, 1.0).sqrt(), clamp(c.y, 0.0, 1.0).sqrt(), clamp(c.z, 0.0, 1.0).sqrt())
+    };
+    let e = shown(a) - shown(b);
+    dot(e, e).sqrt()
+}
+
+/// The fail mask of a pair of references: bit `FAIL_*` set where that test fails and is switched on.
+pub fn similarity_checks(scene: &SceneArgs, step: &StepParams, a: &Attributes, b: &Attributes) -> u32 {
+    if a.object != b.object {
+        return FAIL_G1 & step.tests;
+    }
+    if a.object == NO_OBJECT {
+        return if step.t_pos > 0.0 { 0 } else { FAIL_G2 & step.tests };
+    }
+    let mut mask = 0;
+    let e = b.position - a.position;
+    let distance = dot(e, e).sqrt();
+    // Comparisons are written so that NaN fails, as in the kernel.
+    if !(distance <= step.t_pos) || !(step.t_pos > 0.0) {
+        mask |= FAIL_G2;
+    }
+    if !(dot(a.normal, b.normal) >= step.t_norm) {
+        mask |= FAIL_G3;
+    }
+    let flat = step.t_conv * distance;
+    let (slope_a, slope_b) = (dot(e, a.normal), -dot(e, b.normal));
+    let sa = if slope_a.abs() <= flat { 0.0 } else { slope_a };
+    let sb = if slope_b.abs() <= flat { 0.0 } else { slope_b };
+    if (sa > 0.0 && sb < 0.0) || (sa < 0.0 && sb > 0.0) {
+        mask |= FAIL_G4;
+    }
+    let material = &scene.materials[scene.object_materials[a.object as usize] as usize];
+    if material.diffuse_texture != NO_TEXTURE && (wraps(a.s, b.s, step.t_tex) || wraps(a.t, b.t, step.t_tex)) {
+        mask |= FAIL_TX;
+    }
+    if a.shadow_bits != b.shadow_bits {
+        mask |= FAIL_SH;
+    }
+    if !(gcol_distance(a.gcol, b.gcol, step.flags) <= step.t_gcol) {
+        mask |= FAIL_GC;
+    }
+    mask & step.tests
+}
+
+/// The attributes midway between two references of one object.
+pub fn interpolate(frame: &FrameParams, step: &StepParams, a: &Attributes, b: &Attributes) -> Attributes {
+    if a.object == NO_OBJECT {
+        return *a;
+    }
+    let mut wa = 0.5;
+    if step.flags & STEP_PERSPECTIVE != 0 {
+        let za = dot(a.position - xyz(frame.eye), xyz(frame.forward));
+        let zb = dot(b.position - xyz(frame.eye), xyz(frame.forward));
+        wa = zb / (za + zb);
+    }
+    let wb = 1.0 - wa;
+    Attributes {
+        position: a.position * wa + b.position * wb,
+        normal: normalize(a.normal * wa + b.normal * wb),
+        s: a.s * wa + b.s * wb,
+        t: a.t * wa + b.t * wb,
+        gcol: a.gcol * wa + b.gcol * wb,
+        object: a.object,
+        shadow_bits: a.shadow_bits,
+    }
+}
+
+/// Checks pixel `(x, y)` against its two references; interpolates and shades it or marks it pending.
+pub fn check_pixel(scene: &SceneArgs, step: &StepParams, x: u32, y: u32, out: &FrameBuffers) {
+    let frame = scene.frame;
+    let planes = &out.attributes;
+    let pitch = frame.plane_pitch;
+    let at = plane_index(frame, x, y);
+    if x + step.reference_dx >= frame.width || y + step.reference_dy >= frame.height {
+        planes.set(PLANE_CLASS * pitch + at, CLASS_PENDING);
+        return;
+    }
+    let a = load_attributes(planes, pitch, plane_index(frame, x - step.reference_dx, y - step.reference_dy));
+    let b = load_attributes(planes, pitch, plane_index(frame, x + step.reference_dx, y + step.reference_dy));
+    let mask = similarity_checks(scene, step, &a, &b);
+    if mask != 0 {
+        planes.set(PLANE_CLASS * pitch + at, CLASS_PENDING | mask);
+        return;
+    }
+    let m = interpolate(frame, step, &a, &b);
+    store_attributes(planes, pitch, at, &m);
+    planes.set(PLANE_CLASS * pitch + at, CLASS_INTERPOLATED);
+    planes.set(PLANE_CLAIM * pitch + at, NO_CLAIM);
+    let mut color = xyz(frame.background);
+    if m.object != NO_OBJECT {
+        let point = ShadePoint {
+            material: scene.object_materials[m.object as usize],
+            position: m.position,
+            normal: m.normal,
+            s: m.s,
+            t: m.t,
+            shadow_bits: m.shadow_bits,
+        };
+        color = shade_local(scene, &point, normalize(xyz(frame.eye) - m.position)) + m.gcol;
+    }
+    store_work(&out.counters, pitch, at, &Work { shaded: 1, ..Work::default() });
+    out.color.set(y * frame.width + x, srgb_word(scene.tables, color));
+}

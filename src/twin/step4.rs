@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Twin of `kernels/step4.cl`: post-correction.
+
+use super::planes::plane_index;
+use super::trace::trace_pixel;
+use super::{FrameBuffers, SceneArgs, pack};
+use crate::layout::*;
+
+fn spreads(step: &StepParams, pitch: u32, buffers: &FrameBuffers, at: u32, to: u32) -> bool {
+    let planes = &buffers.attributes;
+    let from_class = planes.get(PLANE_CLASS * pitch + at) & CLASS_MASK;
+    if from_class != CLASS_TRACED && from_class != CLASS_CORRECTED {
+        return false;
+    }
+    if planes.get(PLANE_CLASS * pitch + to) & CLASS_MASK != CLASS_INTERPOLATED {
+        return false;
+    }
+    planes.get(PLANE_OBJECT * pitch + at) != planes.get(PLANE_OBJECT * pitch + to)
+        || (step.flags & STEP_COMPARE_SHADOW != 0
+            && planes.get(PLANE_SHADOW * pitch + at) != planes.get(PLANE_SHADOW * pitch + to))
+}
+
+fn neighbour(frame: &FrameParams, step: &StepParams, buffers: &FrameBuffers, i: u32) -> u32 {
+    let source = buffers.list.get(step.source_offset + (i >> 2));
+    let (x, y) = (source & 0xffff, source >> 16);
+    let (exists, pixel) = match i & 3 {
+        0 => (x > 0, source.wrapping_sub(1)),
+        1 => (x + 1 < frame.width, source.wrapping_add(1)),
+        2 => (y > 0, source.wrapping_sub(0x10000)),
+        _ => (y + 1 < frame.height, source.wrapping_add(0x10000)),
+    };
+    if exists { pixel } else { NO_PIXEL }
+}
+
+fn pixel_plane_index(frame: &FrameParams, pixel: u32) -> u32 {
+    plane_index(frame, pixel & 0xffff, pixel >> 16)
+}
+
+/// One work-item of `step4_mark`.
+pub fn step4_mark(scene: &SceneArgs, step: &StepParams, i: u32, buffers: &FrameBuffers) {
+    if i >= step.item_count {
+        return;
+    }
+    let frame = scene.frame;
+    let pixel = neighbour(frame, step, buffers, i);
+    if pixel == NO_PIXEL {
+        return;
+    }
+    let pitch = frame.plane_pitch;
+    let at = pixel_plane_index(frame, buffers.list.get(step.source_offset + (i >> 2)));
+    let to = pixel_plane_index(frame, pixel);
+    if spreads(step, pitch, buffers, at, to) {
+        buffers.attributes.min(PLANE_CLAIM * pitch + to, i);
+    }
+}
+
+/// One work-item of `step4_count`.
+pub fn step4_count(scene: &SceneArgs, step: &StepParams, chunk: u32, buffers: &FrameBuffers) {
+    let frame = scene.frame;
+    pack::count(chunk, step.item_count, &buffers.masks, &buffers.sums, |i| {
+        let pixel = neighbour(frame, step, buffers, i);
+        pixel != NO_PIXEL
+            && buffers.attributes.get(PLANE_CLAIM * frame.plane_pitch + pixel_plane_index(frame, pixel)) == i
+    });
+}
+
+/// One work-group of `step4_scan`.
+pub fn step4_scan(step: &StepParams, group: u32, buffers: &FrameBuffers) {
+    pack::scan(group, step, &buffers.sums);
+}
+
+/// One work-item of `step4_scatter`.
+pub fn step4_scatter(scene: &SceneArgs, step: &StepParams, chunk: u32, buffers: &FrameBuffers) {
+    pack::scatter(chunk, step, &buffers.masks, &buffers.sums, &buffers.list, |i| {
+        neighbour(scene.frame, step, buffers, i)
+    });
+}
+
+/// One work-item of `step4_trace`.
+pub fn step4_trace(scene: &SceneArgs, step: &StepParams, item: u32, buffers: &FrameBuffers) {
+    if item >= step.item_count {
+        return;
+    }
+    let pixel = buffers.list.get(step.list_offset + item);
+    trace_pixel(scene, pixel & 0xffff, pixel >> 16, CLASS_CORRECTED, step.flags | STEP_STORE, buffers);
+}
+
+/// One work-item of `step4_sweep`.
+pub fn step4_sweep(scene: &SceneArgs, step: &StepParams, line: u32, buffers: &FrameBuffers) {
+    if line >= step.item_count {
+        return;
+    }
+    let frame = scene.frame;
+    let along_row = step.step_x != 0;
+    let length = if along_row { frame.width } else { frame.height };
+    let pixel = |k: u32| if along_row { (k, line) } else { (line, k) };
+    let forth = (1..length).map(|k| (k - 1, k));
+    let back = (1..length).rev().map(|k| (k, k - 1));
+    for (from, to) in forth.chain(back) {
+        let ((fx, fy), (tx, ty)) = (pixel(from), pixel(to));
+        if spreads(step, frame.plane_pitch, buffers, plane_index(frame, fx, fy), plane_index(frame, tx, ty)) {
+            trace_pixel(scene, tx, ty, CLASS_CORRECTED, step.flags | STEP_STORE, buffers);
+        }
+    }
+}

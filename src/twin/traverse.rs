@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Twin of `kernels/common/kdtree.clh`: closest hit and any hit over the kd-tree.
+
+use glam::Vec3;
+
+use super::scene_args::{SceneArgs, Work};
+use crate::kdtree::{LEAF, MAX_DEPTH};
+use crate::layout::{FAR_AWAY, NO_TEXTURE, NO_TRIANGLE, TRIANGLE_CUTOUT, TRIANGLE_NO_SHADOW};
+use crate::math::{fraction, max2, min2};
+
+const WIDEN_UP: f32 = 1.000_000_5;
+const WIDEN_DOWN: f32 = 0.999_999_5;
+const DIRECTION_FLOOR: f32 = 1.0e-20;
+
+/// A point on a triangle, as a ray finds it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Hit {
+    /// Distance along the ray in lengths of its direction.
+    pub t: f32,
+    /// Barycentric weight of the second corner.
+    pub u: f32,
+    /// Barycentric weight of the third corner.
+    pub v: f32,
+    /// Triangle id, or [`NO_TRIANGLE`].
+    pub triangle: u32,
+}
+
+impl Hit {
+    /// The hit of a ray that hits nothing.
+    pub const NONE: Hit = Hit { t: FAR_AWAY, u: 0.0, v: 0.0, triangle: NO_TRIANGLE };
+}
+
+fn safe_inverse(d: f32) -> f32 {
+    let floored = if d.abs() < DIRECTION_FLOOR {
+        if d.is_sign_negative() { -DIRECTION_FLOOR } else { DIRECTION_FLOOR }
+    } else {
+        d
+    };
+    1.0 / floored
+}
+
+fn is_hole(scene: &SceneArgs, triangle: u32, u: f32, v: f32) -> bool {
+    let shading = &scene.triangle_shading[triangle as usize];
+    let id = scene.materials[shading.material as usize].cutout_texture;
+    if id == NO_TEXTURE {
+        return false;
+    }
+    let w = 1.0 - u - v;
+    let [s0, t0, s1, t1, s2, t2] = shading.texcoords;
+    let s = fraction(s0 * w + s1 * u + s2 * v);
+    let t = fraction(t0 * w + t1 * u + t2 * v);
+    let texture = &scene.textures[id as usize];
+    let (width, height) = (texture.width, texture.height);
+    let x = ((s * width as f32) as u32).min(width - 1);
+    let y = height - 1 - ((t * height as f32) as u32).min(height - 1);
+    (scene.texels[(texture.offset + y * width + x) as usize] >> 24) < 128
+}
+
+/// Moeller and Trumbore's test, both sides: (t, u, v, flag bits) where the ray's line crosses the triangle.
+#[inline]
+fn intersect(scene: &SceneArgs, id: u32, o: Vec3, d: Vec3) -> Option<(f32, f32, f32, u32)> {
+    let triangle = &scene.triangles[id as usize];
+    let [v0x, v0y, v0z, bits] = triangle.corner;
+    let [e1x, e1y, e1z, _] = triangle.edge1;
+    let [e2x, e2y, e2z, _] = triangle.edge2;
+    let (px, py, pz) = (d.y * e2z - d.z * e2y, d.z * e2x - d.x * e2z, d.x * e2y - d.y * e2x);
+    let inverse_det = 1.0 / (e1x * px + e1y * py + e1z * pz);
+    let (sx, sy, sz) = (o.x - v0x, o.y - v0y, o.z - v0z);
+    let u = (sx * px + sy * py + sz * pz) * inverse_det;
+    if !(u >= 0.0 && u <= 1.0) {
+        return None;
+    }
+    let (qx, qy, qz) = (sy * e1z - sz * e1y, sz * e1x - sx * e1z, sx * e1y - sy * e1x);
+    let v = (d.x * qx + d.y * qy + d.z * qz) * inverse_det;
+    if !(v >= 0.0 && u + v <= 1.0) {
+        return None;
+    }
+    let t = (e2x * qx + e2y * qy + e2z * qz) * inverse_det;
+    Some((t, u, v, bits.to_bits()))
+}
+
+/// The walk of one ray: the cells along it, near ones first.
+struct Walk<'a> {
+    nodes: &'a [crate::kdtree::KdNode],
+    org: [f32; 4],
+    inv: [f32; 4],
+    sign: [u32; 4],
+    t_min: f32,
+    t_max: f32,
+    stack: [(u32, f32); MAX_DEPTH],
+    depth: usize,
+    node: u32,
+}
+
+impl<'a> Walk<'a> {
+    /// `None` if the ray passes by the tree's box.
+    fn begin(scene: &SceneArgs<'a>, o: Vec3, d: Vec3, t_limit: f32) -> Option<Self> {
+        let inv = [safe_inverse(d.x), safe_inverse(d.y), safe_inverse(d.z), 0.0];
+        let sign = inv.map(|i| u32::from(i < 0.0));
+        let (lo, hi) = (&scene.frame.bounds_min, &scene.frame.bounds_max);
+        let (ax, bx) = ((lo[0] - o.x) * inv[0], (hi[0] - o.x) * inv[0]);
+        let (ay, by) = ((lo[1] - o.y) * inv[1], (hi[1] - o.y) * inv[1]);
+        let (az, bz) = ((lo[2] - o.z) * inv[2], (hi[2] - o.z) * inv[2]);
+        let t_min = max2(0.0, max2(min2(ax, bx), max2(min2(ay, by), min2(az, bz))) * WIDEN_DOWN);
+        let t_max = min2(t_limit, min2(max2(ax, bx), min2(max2(ay, by), max2(az, bz))) * WIDEN_UP);
+        (t_min <= t_max).then(|| Walk {
+            nodes: scene.nodes,
+            org: [o.x, o.y, o.z, 0.0],
+            inv,
+            sign,
+            t_min,
+            t_max,
+            stack: [(0, 0.0); MAX_DEPTH],
+            depth: 0,
+            node: 0,
+        })
+    }
+
+    /// Goes down to the next leaf and returns the range of its entries.
+    #[inline]
+    fn descend(&mut self, work: &mut Work) -> std::ops::Range<usize> {
+        let mut node = self.nodes[self.node as usize];
+        while node.axis_and_payload & 3 != LEAF {
+            work.traversal_steps += 1;
+            let axis = (node.axis_and_payload & 3) as usize;
+            let lower = node.axis_and_payload >> 2;
+            let t_split = (f32::from_bits(node.split_or_first) - self.org[axis]) * self.inv[axis];
+            let near = lower + self.sign[axis];
+            let far = lower + 1 - self.sign[axis];
+            if t_split > self.t_max {
+                self.node = near;
+            } else if t_split < self.t_min {
+                self.node = far;
+            } else {
+                self.stack[self.depth] = (far, self.t_max);
+                self.depth += 1;
+                self.node = near;
+                self.t_max = t_split * WIDEN_UP;
+            }
+            node = self.nodes[self.node as usize];
+        }
+        let first = node.split_or_first as usize;
+        first..first + (node.axis_and_payload >> 2) as usize
+    }
+
+    /// Where the cells after this leaf begin.
+    #[inline]
+    fn end_of_leaf(&mut self) -> f32 {
+        self.t_min = self.t_max * WIDEN_DOWN;
+        self.t_min
+    }
+
+    /// Takes the nearest remembered child; `false` if there is none.
+    #[inline]
+    fn pop(&mut self) -> bool {
+        if self.depth == 0 {
+            return false;
+        }
+        self.depth -= 1;
+        (self.node, self.t_max) = self.stack[self.depth];
+        true
+    }
+}
+
+/// The closest hit of the ray `o + t * d` with `t > 0`: the one with the least (t, triangle id).
+pub fn closest_hit(scene: &SceneArgs, o: Vec3, d: Vec3, work: &mut Work) -> Hit {
+    let mut best = Hit::NONE;
+    let Some(mut walk) = Walk::begin(scene, o, d, FAR_AWAY) else { return best };
+    loop {
+        for &id in &scene.leaf_triangles[walk.descend(work)] {
+            work.triangle_tests += 1;
+            let Some((t, u, v, bits)) = intersect(scene, id, o, d) else { continue };
+            if t > 0.0
+                && (t < best.t || (t == best.t && id < best.triangle))
+                && !(bits & TRIANGLE_CUTOUT != 0 && is_hole(scene, id, u, v))
+            {
+                best = Hit { t, u, v, triangle: id };
+            }
+        }
+        let next = walk.end_of_leaf();
+        if best.t < next || !walk.pop() {
+            return best;
+        }
+    }
+}
+
+/// Does anything that casts a shadow lie on the ray with `0 < t < t_limit`?
+pub fn any_hit(scene: &SceneArgs, o: Vec3, d: Vec3, t_limit: f32, work: &mut Work) -> bool {
+    let Some(mut walk) = Walk::begin(scene, o, d, t_limit) else { return false };
+    loop {
+        for &id in &scene.leaf_triangles[walk.descend(work)] {
+            work.triangle_tests += 1;
+            let Some((t, u, v, bits)) = intersect(scene, id, o, d) else { continue };
+            if t > 0.0
+                && t < t_limit
+                && bits & TRIANGLE_NO_SHADOW == 0
+                && !(bits & TRIANGLE_CUTOUT != 0 && is_hole(scene, id, u, v))
+            {
+                return true;
+            }
+        }
+        walk.end_of_leaf();
+        if !walk.pop() {
+            return false;
+        }
+    }
+}
