@@ -5,6 +5,15 @@
 //! the index of the lower child (the upper child follows it) or, in a leaf, the number of triangles. First word: the
 //! split position as a float, or, in a leaf, the index of its first entry in [`KdTree::leaf_triangles`].
 
+mod build;
+mod clip;
+mod sah;
+mod statistics;
+mod validate;
+
+pub use build::{BuildOptions, MAX_BYTES_PER_TRIANGLE};
+pub use statistics::KdStatistics;
+
 /// The value of a node's axis bits that marks a leaf.
 pub const LEAF: u32 = 3;
 
@@ -22,6 +31,44 @@ pub struct KdNode {
 }
 
 const _: () = assert!(size_of::<KdNode>() == 8);
+
+impl KdNode {
+    /// A leaf with `count` triangles, the first at index `first` of [`KdTree::leaf_triangles`].
+    pub fn leaf(first: u32, count: u32) -> Self {
+        debug_assert!(count < 1 << 30);
+        KdNode { split_or_first: first, axis_and_payload: count << 2 | LEAF }
+    }
+
+    /// An inner node: the plane at `split` on `axis`, the lower child at index `child`, the upper one behind it.
+    pub fn inner(axis: u32, split: f32, child: u32) -> Self {
+        debug_assert!(axis < 3 && child < 1 << 30);
+        KdNode { split_or_first: split.to_bits(), axis_and_payload: child << 2 | axis }
+    }
+
+    /// Whether this is a leaf.
+    #[inline]
+    pub fn is_leaf(self) -> bool {
+        self.axis() == LEAF
+    }
+
+    /// The split axis (0 x, 1 y, 2 z), or [`LEAF`].
+    #[inline]
+    pub fn axis(self) -> u32 {
+        self.axis_and_payload & 3
+    }
+
+    /// An inner node's split position, in scene units.
+    #[inline]
+    pub fn split(self) -> f32 {
+        f32::from_bits(self.split_or_first)
+    }
+
+    /// An inner node's lower child (the upper one follows), or a leaf's number of triangles.
+    #[inline]
+    pub fn payload(self) -> u32 {
+        self.axis_and_payload >> 2
+    }
+}
 
 /// A kd-tree over triangles.
 #[derive(Debug, Clone, Default)]
