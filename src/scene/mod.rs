@@ -4,7 +4,22 @@
 //! A [`Scene`] is plain data in scene units, valid by construction: every index is in range, every number is finite,
 //! and it has at least one triangle with an area. [`load`] makes one from files; [`crate::builtin`] from parameters.
 
+mod assemble;
+pub mod doctor;
+mod fit;
+mod lines;
+mod load;
+mod locate;
+mod mtl;
+mod normals;
+mod obj;
+mod texture;
+mod triangulate;
+mod view;
+
 use glam::{Vec2, Vec3};
+
+pub use load::load;
 
 /// Object id of "no hit": an object of its own (paper section 3, `OID`).
 pub const NO_OBJECT: u32 = u32::MAX;
@@ -38,6 +53,25 @@ pub struct Scene {
     pub view: View,
     /// Things that were mended or left out while loading, one sentence each, with their place.
     pub warnings: Vec<String>,
+    /// What loading counted; for [`doctor::examine`].
+    pub notes: LoadNotes,
+}
+
+/// What was counted while a scene was loaded, and cannot be seen in the scene any more.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct LoadNotes {
+    /// Triangles with a corner whose normal was computed since the file has none.
+    pub triangles_without_normals: usize,
+    /// Triangles in a textured material with a corner without texture coordinates.
+    pub triangles_without_texcoords: usize,
+    /// Triangles left out because they have no area.
+    pub dropped_triangles: usize,
+    /// Names of OBJ objects and groups that the file opens again after others.
+    pub duplicate_names: Vec<String>,
+    /// Texture files that were not found or have an unknown format.
+    pub missing_textures: Vec<String>,
+    /// Whether the view says how large the room is.
+    pub extent_given: bool,
 }
 
 /// One object: an OBJ object or group in one material.

@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! What is odd about a scene: things that draw, but perhaps not as meant.
+//!
+//! The doctor reads a finished [`Scene`], so it serves built-in scenes as well as loaded ones.
+
+use super::fit::Extents;
+use super::{Material, Scene};
+use crate::math::{cross, dot};
+
+/// How much a finding matters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Severity {
+    /// Good to know; the picture is right.
+    Note,
+    /// The picture may not be what was meant.
+    Warning,
+}
+
+/// One thing that is odd about a scene.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Finding {
+    /// How much it matters.
+    pub severity: Severity,
+    /// What it is about, in one or two words that do not change: `normals`, `texture coordinates`, `triangles`,
+    /// `textures`, `extent`, `names`, `winding`, `materials`, `lights` or `loading`.
+    pub topic: &'static str,
+    /// One sentence with the numbers, and the remedy where there is one.
+    pub message: String,
+}
+
+/// A triangle is huge if its longest side exceeds this many extents.
+const HUGE_EXTENTS: f32 = 2.0;
+
+/// A triangle is a needle if its longest side is more than this many times its height.
+const NEEDLE_RATIO: f32 = 1.0e4;
+
+/// Outliers dominate if the box of all vertices is this many times as long as that of the middle 98 %. (Rooms reach 2:
+/// their walls have few vertices.)
+const OUTLIER_RATIO: f32 = 3.0;
+
+/// Everything odd about `scene`, warnings first.
+pub fn examine(scene: &Scene) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    let mut tell = |severity, topic, message: String| findings.push(Finding { severity, topic, message });
+    for warning in &scene.warnings {
+        tell(Severity::Warning, "loading", warning.clone());
+    }
+    attributes(scene, &mut tell);
+    materials(scene, &mut tell);
+    triangles(scene, &mut tell);
+    extent(scene, &mut tell);
+    winding(scene, &mut tell);
+    findings.sort_by_key(|f| std::cmp::Reverse(f.severity));
+    findings
+}
+
+type Tell<'a> = &'a mut dyn FnMut(Severity, &'static str, String);
+
+fn percent(part: usize, whole: usize) -> String {
+    format!("{part} of {whole} ({:.1} %)", 100.0 * part as f64 / whole.max(1) as f64)
+}
+
+/// The first names of a list.
+fn some_of<S: AsRef<str>>(names: &[S]) -> String {
+    let shown: Vec<String> = names.iter().take(5).map(|n| format!("`{}`", n.as_ref())).collect();
+    let more =
+        if names.len() > shown.len() { format!(" and {} more", names.len() - shown.len()) } else { String::new() };
+    shown.join(", ") + &more
+}
+
+fn attributes(scene: &Scene, tell: Tell) {
+    let notes = &scene.notes;
+    let total = scene.triangles.len();
+    if notes.triangles_without_normals > 0 {
+        let share = percent(notes.triangles_without_normals, total);
+        let crease = super::normals::CREASE_DEGREES;
+        let message = format!("{share} triangles have no normals; computed with a crease angle of {crease} degrees");
+        tell(Severity::Note, "normals", message);
+    }
+    if notes.triangles_without_texcoords > 0 {
+        let count = notes.triangles_without_texcoords;
+        let message =
+            format!("{count} triangles in textured materials have no texture coordinates; one texel colours them");
+        tell(Severity::Warning, "texture coordinates", message);
+    }
+    if !notes.missing_textures.is_empty() {
+        let count = notes.missing_textures.len();
+        let message = format!("{count} textures are missing: {}", some_of(&notes.missing_textures));
+        tell(Severity::Warning, "textures", message);
+    }
+    if !notes.duplicate_names.is_empty() {
+        let names = some_of(&notes.duplicate_names);
+        let count = notes.duplicate_names.len();
+        let message = format!("{count} object names occur more than once and count as one object each: {names}");
+        tell(Severity::Note, "names", message);
+    }
+}
+
+fn materials(scene: &Scene, tell: Tell) {
+    let mut names: Vec<&str> = scene.materials.iter().map(|m| m.name.as_str()).collect();
+    names.sort_unstable();
+    let mut twice: Vec<&str> = names.windows(2).filter(|w| w[0] == w[1]).map(|w| w[0]).collect();
+    twice.dedup();
+    if !twice.is_empty() {
+        tell(Severity::Warning, "names", format!("{} material names occur twice: {}", twice.len(), some_of(&twice)));
+    }
+    let invisible = |m: &&Material| m.diffuse_texture.is_some() && m.diffuse.max_element() <= 0.0;
+    let black: Vec<&str> = scene.materials.iter().filter(invisible).map(|m| m.name.as_str()).collect();
+    if !black.is_empty() {
+        let names = some_of(&black);
+        tell(Severity::Warning, "materials", format!("Kd is 0 and blackens the texture of {names}; set Kd to 1 1 1"));
+    }
+    if scene.view.lights.iter().all(|l| l.intensity.max_element() <= 0.0) {
+        tell(Severity::Warning, "lights", "no light shines; only ambient light is seen".into());
+    }
+}
+
+/// Degenerate triangles, needles and giants.
+fn triangles(scene: &Scene, tell: Tell) {
+    if scene.notes.dropped_triangles > 0 {
+        let message = format!("{} triangles have no area and were left out", scene.notes.dropped_triangles);
+        tell(Severity::Note, "triangles", message);
+    }
+    let (mut needles, mut giants) = (0, Vec::new());
+    for (triangle, &object) in scene.triangles.iter().zip(&scene.triangle_objects) {
+        let [a, b, c] = triangle.map(|v| scene.positions[v as usize]);
+        let (e, f, g) = (b - a, c - b, a - c);
+        let longest2 = dot(e, e).max(dot(f, f)).max(dot(g, g));
+        let n = cross(e, -g);
+        // area * 2 = longest * height
+        if longest2 > NEEDLE_RATIO * dot(n, n).sqrt() {
+            needles += 1;
+        }
+        if longest2.sqrt() > HUGE_EXTENTS * scene.view.extent {
+            giants.push(object);
+        }
+    }
+    if needles > 0 {
+        let share = percent(needles, scene.triangles.len());
+        let message = format!("{share} triangles are needles, more than {NEEDLE_RATIO} times as long as high");
+        tell(Severity::Note, "triangles", message);
+    }
+    if !giants.is_empty() {
+        let count = giants.len();
+        giants.dedup();
+        giants.sort_unstable();
+        giants.dedup();
+        let names: Vec<&str> = giants.iter().map(|&o| scene.objects[o as usize].name.as_str()).collect();
+        let extent = scene.view.extent;
+        let message =
+            format!("{count} triangles are longer than {HUGE_EXTENTS} extents ({extent} each), in {}", some_of(&names));
+        tell(Severity::Note, "triangles", message);
+    }
+}
+
+fn extent(scene: &Scene, tell: Tell) {
+    let extents = Extents::of(&scene.positions, &scene.triangles);
+    let longest = |(low, high): (glam::Vec3, glam::Vec3)| (high - low).max_element();
+    let (all, most) = (longest(extents.all), longest(extents.most));
+    let given = scene.view.extent;
+    if all > OUTLIER_RATIO * most {
+        let object = outermost(scene, &extents);
+        let remedy = if scene.notes.extent_given {
+            format!("view.json says {given}, which counts")
+        } else {
+            "set `extent` in view.json to the size of the room".into()
+        };
+        let message = format!(
+            "a few outliers dominate the extent: the box of all vertices is {all} long, that of the middle 98 % {most} \
+             (farthest out: `{object}`); {remedy}"
+        );
+        let severity = if scene.notes.extent_given { Severity::Note } else { Severity::Warning };
+        tell(severity, "extent", message);
+    }
+    if given > 4.0 * all || given < 0.1 * most {
+        let message = format!("extent is {given}, but the scene is {all} long; `--t-pos` is relative to the extent");
+        tell(Severity::Warning, "extent", message);
+    }
+}
+
+/// Name of the object that reaches farthest from the middle of the percentile box.
+fn outermost<'a>(scene: &'a Scene, extents: &Extents) -> &'a str {
+    let middle = extents.most.0 + (extents.most.1 - extents.most.0) * 0.5;
+    let mut farthest = (-1.0, 0);
+    for (triangle, &object) in scene.triangles.iter().zip(&scene.triangle_objects) {
+        for &v in triangle {
+            let distance = (scene.positions[v as usize] - middle).abs().max_element();
+            if distance > farthest.0 {
+                farthest = (distance, object);
+            }
+        }
+    }
+    &scene.objects[farthest.1 as usize].name
+}
+
+/// Neighbouring triangles that are wound in opposite senses: both run along their common edge in the same direction.
+fn winding(scene: &Scene, tell: Tell) {
+    // Vertices at the same place are one: files split them where attributes differ.
+    let mut order: Vec<u32> = (0..scene.positions.len() as u32).collect();
+    let key = |v: u32| (scene.positions[v as usize] + glam::Vec3::ZERO).to_array().map(f32::to_bits);
+    order.sort_unstable_by_key(|&v| (key(v), v));
+    let mut place = vec![0u32; scene.positions.len()];
+    let mut last = 0;
+    for (i, &v) in order.iter().enumerate() {
+        if i == 0 || key(order[i - 1]) != key(v) {
+            last = v;
+        }
+        place[v as usize] = last;
+    }
+    drop(order);
+    // An edge as (lower vertex, higher vertex, object), and whether the triangle runs from higher to lower.
+    let mut edges: Vec<(u32, u32, u32, bool)> = Vec::with_capacity(scene.triangles.len() * 3);
+    for (triangle, &object) in scene.triangles.iter().zip(&scene.triangle_objects) {
+        let [a, b, c] = triangle.map(|v| place[v as usize]);
+        for (from, to) in [(a, b), (b, c), (c, a)] {
+            edges.push((from.min(to), from.max(to), object, from > to));
+        }
+    }
+    edges.sort_unstable();
+    let (mut shared, mut disagreeing, mut crowded) = (0, 0, 0);
+    let mut objects = Vec::new();
+    for run in edges.chunk_by(|a, b| (a.0, a.1, a.2) == (b.0, b.1, b.2)) {
+        match run {
+            [a, b] => {
+                shared += 1;
+                if a.3 == b.3 {
+                    disagreeing += 1;
+                    objects.push(a.2);
+                }
+            }
+            [_] => {}
+            _ => crowded += 1,
+        }
+    }
+    if disagreeing > 0 {
+        objects.sort_unstable();
+        objects.dedup();
+        let share = percent(disagreeing, shared);
+        let names: Vec<&str> = objects.iter().map(|&o| scene.objects[o as usize].name.as_str()).collect();
+        let message = format!(
+            "winding is mixed: at {share} edges the two faces run in opposite senses, in {}; drawn two-sided, but glass \
+             needs to know inside from outside",
+            some_of(&names)
+        );
+        tell(Severity::Note, "winding", message);
+    }
+    if crowded > 0 {
+        let message = format!("{crowded} edges belong to more than two triangles (duplicate or inner faces)");
+        tell(Severity::Note, "triangles", message);
+    }
+}

@@ -1,0 +1,309 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! MTL files through `tobj`.
+//!
+//! As with OBJ files, `tobj` 4.0.5 reads a checked copy: it panics at `Kd 0.5` (one number means grey), takes NaN, and
+//! keeps the options of maps (`-s 2 2 1 wood.jpg`) as part of the file name.
+//!
+//! Meaning of the keys: `Kd` diffuse colour; `Ks` highlight, and what a mirror reflects; `Ns` Blinn-Phong exponent;
+//! `Ni` index of refraction; `Tf` colour of light through glass; `map_Kd` picture that `Kd` multiplies (options `-s`
+//! and `-o` apply); `map_d` cut-out mask; `illum` the kind of surface where `view.json` names none; `d` and `Tr`
+//! (opacity, 1 - opacity) make a warning where they ask for what is not drawn. `Ka` and `Ke` are read and not used:
+//! ambient light is the view's. Everything else is passed over.
+
+use std::collections::HashMap;
+use std::path::Path;
+
+use glam::{Vec2, Vec3};
+
+use super::assemble::TexcoordMap;
+use super::lines::{LogicalLines, keyword, name_text, words};
+use crate::{Error, Result};
+
+/// A `map_` line.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Map {
+    /// File name as written.
+    pub file: String,
+    /// Options `-s` and `-o`.
+    pub texcoords: TexcoordMap,
+}
+
+/// A material as the file has it; `None`: the file does not say.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(super) struct MtlMaterial {
+    pub name: String,
+    pub diffuse: Option<Vec3>,
+    pub specular: Option<Vec3>,
+    pub shininess: Option<f32>,
+    pub transmission: Option<Vec3>,
+    pub index_of_refraction: Option<f32>,
+    /// `d`, or 1 - `Tr`.
+    pub opacity: Option<f32>,
+    pub illumination_model: Option<u8>,
+    pub diffuse_map: Option<Map>,
+    pub cutout_map: Option<Map>,
+}
+
+/// Reads the MTL file at `path`; appends sentences about what was passed over to `warnings`.
+pub(super) fn read(path: &Path, warnings: &mut Vec<String>) -> Result<Vec<MtlMaterial>> {
+    let checked = check(path, warnings)?;
+    let (materials, _) = tobj::load_mtl_buf(&mut checked.text.as_bytes())
+        .map_err(|e| Error::scene(path.display().to_string(), format!("not a readable MTL file: {e}")))?;
+    let mut read: Vec<MtlMaterial> = Vec::with_capacity(materials.len());
+    let mut by_name: HashMap<String, usize> = HashMap::new();
+    for m in materials {
+        let (name, line) = name_of(&checked, &m.name)?;
+        let map = |number: &Option<String>| {
+            number.as_ref().and_then(|n| n.parse().ok()).and_then(|n: usize| checked.maps.get(n).cloned())
+        };
+        let extra = |key: &str| m.unknown_param.get(key).map(String::as_str);
+        let material = MtlMaterial {
+            name: name.clone(),
+            diffuse: m.diffuse.map(Vec3::from),
+            specular: m.specular.map(Vec3::from),
+            shininess: m.shininess,
+            transmission: extra("Tf").and_then(three),
+            index_of_refraction: m.optical_density,
+            opacity: m.dissolve.or_else(|| extra("Tr").and_then(|t| t.parse::<f32>().ok()).map(|t| 1.0 - t)),
+            illumination_model: m.illumination_model,
+            diffuse_map: map(&m.diffuse_texture),
+            cutout_map: map(&m.dissolve_texture),
+        };
+        match by_name.get(&name) {
+            Some(&earlier) => {
+                warnings
+                    .push(format!("{}:{line}: material `{name}` is defined again; this one counts", path.display()));
+                read[earlier] = material;
+            }
+            None => {
+                by_name.insert(name, read.len());
+                read.push(material);
+            }
+        }
+    }
+    Ok(read)
+}
+
+fn name_of(checked: &Checked, number: &str) -> Result<(String, usize)> {
+    let found = number.parse().ok().and_then(|n: usize| checked.names.get(n).cloned());
+    found.ok_or_else(|| Error::scene("MTL reader", format!("material number `{number}` is unknown")))
+}
+
+fn three(text: &str) -> Option<Vec3> {
+    let mut values = text.split(' ').map(|v| v.parse::<f32>().ok());
+    Some(Vec3::new(values.next()??, values.next()??, values.next()??))
+}
+
+/// A file in the plain dialect that `tobj` reads without surprises: materials and maps go by number.
+#[derive(Default)]
+struct Checked {
+    text: String,
+    names: Vec<(String, usize)>,
+    maps: Vec<Map>,
+}
+
+fn check(path: &Path, warnings: &mut Vec<String>) -> Result<Checked> {
+    let mut lines = LogicalLines::open(path)?;
+    let mut checked = Checked::default();
+    while let Some((number, line)) = lines.next_line()? {
+        let syntax = |message: String| Error::Syntax { path: path.to_path_buf(), line: number, message };
+        let (key, rest) = keyword(line);
+        let key = String::from_utf8_lossy(key).into_owned();
+        let lower = key.to_ascii_lowercase();
+        if lower == "newmtl" {
+            let name = name_text(rest);
+            if name.is_empty() {
+                return Err(syntax("`newmtl` without a name".into()));
+            }
+            checked.text += &format!("newmtl {}\n", checked.names.len());
+            checked.names.push((name, number));
+            continue;
+        }
+        let wrong = |message: String| syntax(format!("`{key}`: {message}"));
+        match key.as_str() {
+            "Kd" | "Ks" | "Tf" => {
+                if let Some(first @ (b"spectral" | b"xyz")) = words(rest).next() {
+                    let first = String::from_utf8_lossy(first);
+                    warnings
+                        .push(format!("{}:{number}: `{key} {first}` is not supported and left out", path.display()));
+                    continue;
+                }
+                let values = numbers(rest).map_err(wrong)?;
+                let rgb = match values[..] {
+                    [grey] => [grey; 3],
+                    [r, g, b, ..] => [r, g, b],
+                    _ => return Err(wrong(format!("{} numbers; 3 are right", values.len()))),
+                };
+                if rgb.iter().any(|v| !(0.0..=1.0).contains(v)) {
+                    warnings.push(format!("{}:{number}: `{key}` is limited to 0 .. 1", path.display()));
+                }
+                let [r, g, b] = rgb.map(|v| v.clamp(0.0, 1.0));
+                checked.text += &format!("{key} {r} {g} {b}\n");
+            }
+            "Ns" | "Ni" | "d" | "Tr" => {
+                let rest = rest.strip_prefix(b"-halo").unwrap_or(rest);
+                let values = numbers(rest).map_err(wrong)?;
+                let Some(&value) = values.first() else { return Err(wrong("a number is missing".into())) };
+                let (low, high) = match key.as_str() {
+                    "Ns" => (0.0, 1.0e6),
+                    "Ni" => (1.0, 100.0),
+                    _ => (0.0, 1.0),
+                };
+                // Exporters write `Ni 0` or `Ni 0.001` for what does not refract.
+                if !(low..=high).contains(&value) && key != "Ni" {
+                    let at = path.display();
+                    warnings.push(format!("{at}:{number}: `{key} {value}` is limited to {low} .. {high}"));
+                }
+                checked.text += &format!("{key} {}\n", value.clamp(low, high));
+            }
+            "illum" => {
+                let value = name_text(words(rest).next().unwrap_or_default());
+                match value.parse::<u8>() {
+                    Ok(value) if value <= 10 => checked.text += &format!("illum {value}\n"),
+                    _ => return Err(wrong(format!("`{value}` is not an illumination model; 0 to 10 are right"))),
+                }
+            }
+            _ if lower == "map_kd" || lower == "map_d" => {
+                let canonical = if lower == "map_kd" { "map_Kd" } else { "map_d" };
+                let (map, ignored) = parse_map(&name_text(rest)).map_err(wrong)?;
+                if !ignored.is_empty() {
+                    let at = path.display();
+                    warnings.push(format!("{at}:{number}: `{key}` options {} are not supported", ignored.join(", ")));
+                }
+                checked.text += &format!("{canonical} {}\n", checked.maps.len());
+                checked.maps.push(map);
+            }
+            _ => {}
+        }
+    }
+    Ok(checked)
+}
+
+/// The numbers of a line, up to the first word of a comment.
+fn numbers(rest: &[u8]) -> std::result::Result<Vec<f32>, String> {
+    words(rest)
+        .take_while(|w| w[0] != b'#')
+        .map(|word| {
+            let text = String::from_utf8_lossy(&word[..word.len().min(60)]);
+            match text.parse::<f32>() {
+                Ok(value) if value.is_finite() => Ok(value),
+                Ok(_) => Err(format!("`{text}` is not a finite number")),
+                Err(_) => Err(format!("`{text}` is not a number")),
+            }
+        })
+        .collect()
+}
+
+/// Splits a map's arguments into options and file name (which may have spaces). Also names the options not applied.
+fn parse_map(text: &str) -> std::result::Result<(Map, Vec<String>), String> {
+    let mut rest = text.trim();
+    let mut ignored = Vec::new();
+    let mut texcoords = TexcoordMap::default();
+    while rest.starts_with('-') {
+        let (option, after) = rest.split_once(char::is_whitespace).unwrap_or((rest, ""));
+        // How many words follow: (at least, at most); all but the first must be numbers where the count varies.
+        let (least, most) = match option {
+            "-s" | "-o" | "-t" => (1, 3),
+            "-mm" => (2, 2),
+            "-blendu" | "-blendv" | "-cc" | "-clamp" | "-imfchan" | "-texres" | "-bm" | "-boost" | "-type" => (1, 1),
+            // A file name that begins with a dash.
+            _ => break,
+        };
+        let mut after = after.trim_start();
+        let mut values = Vec::new();
+        for i in 0..most {
+            let (word, further) = after.split_once(char::is_whitespace).unwrap_or((after, ""));
+            let number = word.parse::<f32>().ok();
+            if i >= least && (number.is_none() || further.trim().is_empty()) {
+                break;
+            }
+            values.push((word, number));
+            after = further.trim_start();
+        }
+        let number = |i: usize, default: f32| match values.get(i) {
+            None => Ok(default),
+            Some((_, Some(v))) if v.abs() <= 1.0e6 => Ok(*v),
+            Some((word, _)) => Err(format!("option {option}: `{word}` is not a number in -1e6 .. 1e6")),
+        };
+        match option {
+            "-s" => texcoords.scale = Vec2::new(number(0, 1.0)?, number(1, 1.0)?),
+            "-o" => texcoords.offset = Vec2::new(number(0, 0.0)?, number(1, 0.0)?),
+            // Without effect here, or asking for what is done anyway.
+            "-blendu" | "-blendv" | "-texres" | "-boost" | "-imfchan" | "-bm" => {}
+            "-clamp" if values.first().is_some_and(|(word, _)| *word == "off") => {}
+            _ => ignored.push(option.to_string()),
+        }
+        rest = after;
+    }
+    if rest.is_empty() {
+        return Err("a file name is missing".into());
+    }
+    Ok((Map { file: rest.to_string(), texcoords }, ignored))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    fn read_text(text: &str) -> (Result<Vec<MtlMaterial>>, Vec<String>) {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("m.mtl");
+        std::fs::write(&path, text).unwrap();
+        let mut warnings = Vec::new();
+        (read(&path, &mut warnings), warnings)
+    }
+
+    #[test]
+    fn every_key_arrives() {
+        let text = "# c\nnewmtl red glass\nKa 1 1 1\nKd 0.5\nKs .1 .2 .3\nNs 30\nNi 1.45\nTf 1 .5 .25\nTr 0.25\nillum 7\n\
+                    map_Kd -s 2 3 1 -clamp off my wood.jpg\nmap_d a.png\nnewmtl b\nd 0.5\n";
+        let (materials, warnings) = read_text(text);
+        let materials = materials.unwrap();
+        assert_eq!(warnings, [String::new(); 0]);
+        let m = &materials[0];
+        assert_eq!(
+            (m.name.as_str(), m.diffuse, m.specular),
+            ("red glass", Some(Vec3::splat(0.5)), Some(Vec3::new(0.1, 0.2, 0.3)))
+        );
+        assert_eq!((m.shininess, m.index_of_refraction, m.opacity), (Some(30.0), Some(1.45), Some(0.75)));
+        assert_eq!((m.transmission, m.illumination_model), (Some(Vec3::new(1.0, 0.5, 0.25)), Some(7)));
+        let map = m.diffuse_map.as_ref().unwrap();
+        assert_eq!((map.file.as_str(), map.texcoords.scale), ("my wood.jpg", Vec2::new(2.0, 3.0)));
+        assert_eq!(m.cutout_map.as_ref().unwrap().file, "a.png");
+        assert_eq!(materials[1].opacity, Some(0.5));
+    }
+
+    #[test]
+    fn a_file_name_may_look_like_a_number_or_an_option() {
+        assert_eq!(parse_map("-s 2 3.png").unwrap().0.file, "3.png");
+        assert_eq!(parse_map("-o 1 2 3 4 5.png").unwrap().0.file, "4 5.png");
+        assert_eq!(parse_map("-odd.png").unwrap().0.file, "-odd.png");
+        assert_eq!(parse_map("-mm 0 1 x.png").unwrap().1, ["-mm"]);
+        assert!(parse_map("-s 1").is_err());
+        assert!(parse_map("-s nan 1 1 x.png").is_err());
+    }
+
+    #[test]
+    fn wrong_values_are_named_with_their_line() {
+        for (text, expected) in [
+            ("newmtl a\nKd 1 2\n", "m.mtl:2: `Kd`: 2 numbers"),
+            ("newmtl a\n\nNs nan\n", "m.mtl:3: `Ns`: `nan` is not a finite number"),
+            ("newmtl a\nillum 99\n", "m.mtl:2: `illum`"),
+            ("newmtl \n", "m.mtl:1: `newmtl` without a name"),
+            ("newmtl a\nmap_Kd\n", "m.mtl:2: `map_Kd`: a file name is missing"),
+        ] {
+            let message = read_text(text).0.unwrap_err().to_string();
+            assert!(message.contains(expected), "{message}");
+        }
+    }
+
+    #[test]
+    fn a_second_definition_counts_and_is_told() {
+        let (materials, warnings) = read_text("newmtl a\nKd 0 0 0\nnewmtl b\nnewmtl a\nKd 1 1 1\n");
+        let materials = materials.unwrap();
+        assert_eq!(materials.iter().map(|m| m.name.as_str()).collect::<Vec<_>>(), ["a", "b"]);
+        assert_eq!(materials[0].diffuse, Some(Vec3::ONE));
+        assert!(warnings[0].contains("m.mtl:4"), "{warnings:?}");
+    }
+}

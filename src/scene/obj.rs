@@ -1,0 +1,433 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! OBJ files through `tobj`.
+//!
+//! `tobj` 4.0.5 does well on clean files and surprises on others, so it never sees the file itself: a [`Feed`] reads
+//! the logical lines, checks them and hands on a plain dialect. What the feed mends or refuses, and why:
+//!
+//! - A corner without `vt` or `vn` gets those of the corner before it once the file has any. The feed puts an entry
+//!   [`MISSING`] first in both lists and refers such corners to it; all other indices move up by one.
+//! - `l` makes polygons of lines, an index 0 means "none" for `vt` and `vn`, an index far below zero wraps around:
+//!   lines and points are counted and left out, indices are checked against what is defined so far.
+//! - Faces of a material that no MTL file defines lose the material's name. Names of groups and materials are handed
+//!   on as numbers, and each material is "defined" where it is first used; MTL files are read afterwards.
+//! - Continued lines, CR and a byte order mark, colours behind positions, `vt` with one coordinate: put right.
+
+use std::collections::HashMap;
+use std::io::{self, BufRead, Read};
+use std::path::Path;
+
+use super::lines::{LogicalLines, keyword, name_text, words};
+use super::locate;
+use crate::{Error, Result};
+
+/// What stands for "the file has none" in the lists of texture coordinates and normals.
+pub(super) const MISSING: f32 = f32::MAX;
+
+/// Largest coordinate that is accepted: squares of areas of such triangles are still finite in single precision.
+pub(super) const MAX_COORDINATE: f32 = 1.0e9;
+
+/// Bytes that the feed keeps ready: few, since they are copied.
+const READY_BYTES: usize = 32 << 10;
+
+/// An OBJ file as `tobj` gives it, with the names that stand behind its numbers.
+#[derive(Debug)]
+pub(super) struct ObjFile {
+    /// One for each run of faces of one group and material. Name: a number, index into `groups`.
+    pub models: Vec<tobj::Model>,
+    /// Names of OBJ objects and groups.
+    pub groups: Vec<String>,
+    /// Names of materials in order of first use, each with the line of that use. `tobj`'s material ids are indices.
+    pub materials: Vec<(String, usize)>,
+    /// The `mtllib` arguments with their lines.
+    pub libraries: Vec<(String, usize)>,
+    /// Groups that were left and taken up again under the same name, in order of appearance.
+    pub reopened_groups: Vec<String>,
+    /// What was left out.
+    pub warnings: Vec<String>,
+}
+
+/// Reads the OBJ file at `path`. `progress` hears the part of the file that has been read.
+pub(super) fn read(path: &Path, progress: &dyn Fn(f32)) -> Result<ObjFile> {
+    let mut feed = Feed::new(LogicalLines::open(path)?, progress);
+    let define = |name: &Path| {
+        let name = name.display().to_string();
+        let material = tobj::Material { name: name.clone(), ..Default::default() };
+        Ok((vec![material], HashMap::from([(name, 0)])))
+    };
+    // Options at their defaults: separate indices, polygons whole.
+    let loaded = tobj::load_obj_buf(&mut feed, &tobj::LoadOptions::default(), define);
+    if let Some(error) = feed.error {
+        return Err(error);
+    }
+    let models = match loaded {
+        Ok((models, _)) => models,
+        Err(e) => return Err(locate::bad_number(path).unwrap_or_else(|| unexplained(path, e))),
+    };
+    let warnings = feed.warnings();
+    Ok(ObjFile {
+        models,
+        groups: feed.groups.names.into_iter().map(|(name, _)| name).collect(),
+        materials: feed.materials.names,
+        libraries: feed.libraries,
+        reopened_groups: feed.reopened_groups,
+        warnings,
+    })
+}
+
+/// An error of `tobj` for which no line could be found.
+fn unexplained(path: &Path, error: tobj::LoadError) -> Error {
+    Error::scene(path.display().to_string(), format!("not a readable OBJ file: {error}"))
+}
+
+/// Names in order of first appearance, with the line of that appearance.
+#[derive(Default)]
+struct Names {
+    names: Vec<(String, usize)>,
+    ids: HashMap<String, usize>,
+}
+
+impl Names {
+    /// The number of `name`, and whether it is new.
+    fn number(&mut self, name: String, line: usize) -> (usize, bool) {
+        if let Some(&id) = self.ids.get(&name) {
+            return (id, false);
+        }
+        let id = self.names.len();
+        self.ids.insert(name.clone(), id);
+        self.names.push((name, line));
+        (id, true)
+    }
+}
+
+/// How many entries of each kind have been defined so far, and whether their list has begun in what `tobj` reads.
+#[derive(Default)]
+struct Defined {
+    positions: u64,
+    texcoords: u64,
+    normals: u64,
+}
+
+/// The reader that `tobj` reads from.
+struct Feed<'a> {
+    lines: LogicalLines,
+    progress: &'a dyn Fn(f32),
+    told: f32,
+    /// Plain OBJ text, handed out from `at` on.
+    ready: Vec<u8>,
+    at: usize,
+    error: Option<Error>,
+    defined: Defined,
+    groups: Names,
+    group: usize,
+    /// Faces since the last line that opened a group.
+    faces_in_group: u64,
+    /// By group number: it has faces.
+    group_has_faces: Vec<bool>,
+    reopened_groups: Vec<String>,
+    materials: Names,
+    libraries: Vec<(String, usize)>,
+    /// Count and first line of: lines and points, faces with fewer than three corners, free-form geometry.
+    lines_and_points: (u64, usize),
+    small_faces: (u64, usize),
+    free_form: (u64, usize),
+}
+
+/// Whether reading goes on.
+enum Step {
+    More,
+    End,
+}
+
+impl<'a> Feed<'a> {
+    fn new(lines: LogicalLines, progress: &'a dyn Fn(f32)) -> Self {
+        let mut feed = Feed {
+            lines,
+            progress,
+            told: 0.0,
+            ready: Vec::with_capacity(READY_BYTES * 2),
+            at: 0,
+            error: None,
+            defined: Defined::default(),
+            groups: Names::default(),
+            group: 0,
+            faces_in_group: 0,
+            group_has_faces: Vec::new(),
+            reopened_groups: Vec::new(),
+            materials: Names::default(),
+            libraries: Vec::new(),
+            lines_and_points: (0, 0),
+            small_faces: (0, 0),
+            free_form: (0, 0),
+        };
+        // Faces before any group.
+        feed.open_group(String::new(), 0);
+        feed
+    }
+
+    /// Turns one logical line into plain OBJ.
+    fn step(&mut self) -> Result<Step> {
+        let Some((number, line)) = self.lines.next_line()? else { return Ok(Step::End) };
+        let (key, rest) = keyword(line);
+        match key {
+            b"v" => {
+                self.defined.positions += 1;
+                let kept = match words(rest).count() {
+                    // x y z, or with a weight
+                    3 | 4 => rest,
+                    // with a colour, which is left out
+                    6 | 7 => first_words(rest, 3),
+                    n => {
+                        let message =
+                            format!("`v` with {n} numbers; 3 are right (or 4 with a weight, 6 with a colour)");
+                        return Err(syntax(self.lines.path(), number, message));
+                    }
+                };
+                push_line(&mut self.ready, b"v ", kept);
+            }
+            b"vt" => {
+                if self.defined.texcoords == 0 {
+                    begin_list(&mut self.ready, self.group, self.faces_in_group, "vt", 2);
+                }
+                self.defined.texcoords += 1;
+                push_line(&mut self.ready, b"vt ", rest);
+                if words(rest).count() == 1 {
+                    self.ready.pop();
+                    self.ready.extend_from_slice(b" 0\n");
+                }
+            }
+            b"vn" => {
+                if self.defined.normals == 0 {
+                    begin_list(&mut self.ready, self.group, self.faces_in_group, "vn", 3);
+                }
+                self.defined.normals += 1;
+                push_line(&mut self.ready, b"vn ", rest);
+            }
+            b"f" => {
+                let before = self.ready.len();
+                match push_face(&mut self.ready, rest, &self.defined) {
+                    Ok(corners) if corners >= 3 => {
+                        self.faces_in_group += 1;
+                        self.group_has_faces[self.group] = true;
+                    }
+                    Ok(_) => {
+                        self.ready.truncate(before);
+                        note(&mut self.small_faces, number);
+                    }
+                    Err(message) => return Err(syntax(self.lines.path(), number, message)),
+                }
+            }
+            b"l" | b"p" => note(&mut self.lines_and_points, number),
+            b"o" | b"g" => {
+                let name = name_text(rest);
+                self.open_group(name, number);
+            }
+            b"usemtl" => {
+                let name = name_text(rest);
+                let (id, new) = self.materials.number(name, number);
+                if new {
+                    self.ready.extend_from_slice(format!("mtllib {id}\n").as_bytes());
+                }
+                self.ready.extend_from_slice(format!("usemtl {id}\n").as_bytes());
+            }
+            b"mtllib" => {
+                let name = name_text(rest);
+                self.libraries.push((name, number));
+            }
+            b"curv" | b"curv2" | b"surf" => note(&mut self.free_form, number),
+            // Smoothing groups, render attributes, comments, anything unknown: as any OBJ reader, pass over it.
+            _ => {}
+        }
+        Ok(Step::More)
+    }
+
+    /// Starts a group (or goes on with one that was left).
+    fn open_group(&mut self, name: String, line: usize) {
+        let (id, new) = self.groups.number(name, line);
+        if new {
+            self.group_has_faces.push(false);
+        } else if id != self.group && self.group_has_faces[id] {
+            let name = &self.groups.names[id].0;
+            if !name.is_empty() && !self.reopened_groups.contains(name) {
+                self.reopened_groups.push(name.clone());
+            }
+        }
+        self.group = id;
+        self.faces_in_group = 0;
+        self.ready.extend_from_slice(format!("g {id}\n").as_bytes());
+    }
+
+    /// Fills `ready` with the next lines.
+    fn refill(&mut self) -> Result<()> {
+        self.ready.drain(..self.at);
+        self.at = 0;
+        while self.ready.len() < READY_BYTES {
+            if let Step::End = self.step()? {
+                break;
+            }
+        }
+        let fraction = self.lines.fraction_read();
+        if fraction - self.told >= 0.01 {
+            self.told = fraction;
+            (self.progress)(fraction);
+        }
+        Ok(())
+    }
+
+    fn warnings(&self) -> Vec<String> {
+        let path = self.lines.path().display();
+        let mut all = Vec::new();
+        let mut tell = |(count, line): (u64, usize), what: &str| {
+            if count > 0 {
+                all.push(format!("{path}:{line}: {count} {what} left out (first here)"));
+            }
+        };
+        tell(self.lines_and_points, "line and point elements");
+        tell(self.small_faces, "faces with fewer than three corners");
+        tell(self.free_form, "free-form curves and surfaces");
+        all
+    }
+}
+
+impl Read for Feed<'_> {
+    fn read(&mut self, buf: &mut [u8]) -> io::Result<usize> {
+        let n = self.fill_buf()?.read(buf)?;
+        self.consume(n);
+        Ok(n)
+    }
+}
+
+impl BufRead for Feed<'_> {
+    fn fill_buf(&mut self) -> io::Result<&[u8]> {
+        if self.at == self.ready.len()
+            && let Err(e) = self.refill()
+        {
+            self.error = Some(e);
+            return Err(io::Error::other("see the error that was kept"));
+        }
+        Ok(&self.ready[self.at..])
+    }
+
+    fn consume(&mut self, amount: usize) {
+        self.at += amount;
+    }
+}
+
+fn syntax(path: &Path, line: usize, message: String) -> Error {
+    Error::Syntax { path: path.to_path_buf(), line, message }
+}
+
+fn note(counter: &mut (u64, usize), line: usize) {
+    if counter.0 == 0 {
+        counter.1 = line;
+    }
+    counter.0 += 1;
+}
+
+/// The part of `line` that holds its first `n` words.
+fn first_words(line: &[u8], n: usize) -> &[u8] {
+    let mut end = 0;
+    for _ in 0..n {
+        end += line[end..].iter().take_while(|b| b.is_ascii_whitespace()).count();
+        end += line[end..].iter().take_while(|b| !b.is_ascii_whitespace()).count();
+    }
+    &line[..end]
+}
+
+fn push_line(out: &mut Vec<u8>, key: &[u8], rest: &[u8]) {
+    out.extend_from_slice(key);
+    out.extend_from_slice(rest);
+    out.push(b'\n');
+}
+
+/// Writes the entry [`MISSING`] of a list of texture coordinates or normals. Faces of the same group that came before
+/// must not meet that list, so they are closed first.
+fn begin_list(out: &mut Vec<u8>, group: usize, faces_in_group: u64, key: &str, numbers: usize) {
+    if faces_in_group > 0 {
+        out.extend_from_slice(format!("g {group}\n").as_bytes());
+    }
+    out.extend_from_slice(key.as_bytes());
+    for _ in 0..numbers {
+        out.extend_from_slice(format!(" {MISSING:e}").as_bytes());
+    }
+    out.push(b'\n');
+}
+
+/// Writes a face in plain OBJ; the number of its corners, or what is wrong with it.
+fn push_face(out: &mut Vec<u8>, rest: &[u8], defined: &Defined) -> std::result::Result<usize, String> {
+    out.push(b'f');
+    let mut corners = 0;
+    for word in words(rest) {
+        if word[0] == b'#' {
+            break;
+        }
+        out.push(b' ');
+        push_corner(out, word, defined)
+            .map_err(|why| format!("corner `{}`: {why}", String::from_utf8_lossy(&word[..word.len().min(60)])))?;
+        corners += 1;
+    }
+    out.push(b'\n');
+    Ok(corners)
+}
+
+fn push_corner(out: &mut Vec<u8>, word: &[u8], defined: &Defined) -> std::result::Result<(), String> {
+    let mut parts = word.split(|&b| b == b'/');
+    let position = index(parts.next().unwrap_or_default(), defined.positions, "vertices (`v`)")?;
+    let texcoord = index(parts.next().unwrap_or_default(), defined.texcoords, "texture coordinates (`vt`)")?;
+    let normal = index(parts.next().unwrap_or_default(), defined.normals, "normals (`vn`)")?;
+    if parts.next().is_some() {
+        return Err("more than three indices; v, v/vt, v//vn or v/vt/vn are right".into());
+    }
+    let Some(position) = position else { return Err("no vertex index; v, v/vt, v//vn or v/vt/vn are right".into()) };
+    push_number(out, position);
+    // The entry MISSING comes first where a list has begun.
+    let (has_texcoords, has_normals) = (defined.texcoords > 0, defined.normals > 0);
+    if has_texcoords {
+        out.push(b'/');
+        push_number(out, texcoord.map_or(1, |t| t + 1));
+    } else if has_normals {
+        out.push(b'/');
+    }
+    if has_normals {
+        out.push(b'/');
+        push_number(out, normal.map_or(1, |n| n + 1));
+    }
+    Ok(())
+}
+
+/// An index from 1, made from one that may count backwards. `None`: left empty.
+fn index(text: &[u8], count: u64, what: &str) -> std::result::Result<Option<u64>, String> {
+    if text.is_empty() {
+        return Ok(None);
+    }
+    let (negative, digits) = match text[0] {
+        b'-' => (true, &text[1..]),
+        b'+' => (false, &text[1..]),
+        _ => (false, text),
+    };
+    if digits.is_empty() || !digits.iter().all(u8::is_ascii_digit) {
+        return Err("an index must be a whole number".into());
+    }
+    // Saturates: any such number is out of range.
+    let value = digits.iter().fold(0u64, |v, d| v.saturating_mul(10).saturating_add(u64::from(d - b'0')));
+    if value == 0 {
+        return Err("index 0; OBJ files count from 1".into());
+    }
+    if value > count {
+        return Err(format!("index out of range: {count} {what} are defined above this line"));
+    }
+    Ok(Some(if negative { count - value + 1 } else { value }))
+}
+
+fn push_number(out: &mut Vec<u8>, mut value: u64) {
+    let mut digits = [0u8; 20];
+    let mut at = digits.len();
+    loop {
+        at -= 1;
+        digits[at] = b'0' + (value % 10) as u8;
+        value /= 10;
+        if value == 0 {
+            break;
+        }
+    }
+    out.extend_from_slice(&digits[at..]);
+}

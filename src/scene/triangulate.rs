@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Polygons into triangles: fans where the polygon is convex, ear clipping in the best-fit plane elsewhere.
+//!
+//! The plane's normal is Newell's (the sum of the cross products of successive corners), so that slightly bent
+//! polygons do well. Ear clipping follows Meisters ("Polygons have ears", 1975) with the book-keeping of Eberly
+//! ("Triangulation by ear clipping"): only a clipped ear's neighbours are looked at again, which makes it
+//! O(corners x reflex corners).
+
+use glam::{DVec2, DVec3, Vec3};
+
+/// Most corner tests spent on one polygon (about a second); beyond that it becomes a fan.
+const MAX_TESTS: u64 = 400_000_000;
+
+/// How a polygon was split.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Split {
+    /// Its triangles cover it exactly.
+    Exact,
+    /// It crosses itself or is far too large: the triangles are a best effort.
+    Approximate,
+    /// It has no area.
+    Degenerate,
+}
+
+/// Splits the polygon with these corners; appends triangles of corner numbers to `out`, wound as the polygon is.
+pub(super) fn split(corners: &[Vec3], out: &mut Vec<[u32; 3]>) -> Split {
+    let n = corners.len();
+    if n < 3 {
+        return Split::Degenerate;
+    }
+    // Relative to the first corner, where differences of floats are most exact.
+    let origin = corners[0].as_dvec3();
+    let points: Vec<DVec3> = corners.iter().map(|c| c.as_dvec3() - origin).collect();
+    let mut normal = DVec3::ZERO;
+    for i in 0..n {
+        normal += points[i].cross(points[(i + 1) % n]);
+    }
+    if normal == DVec3::ZERO {
+        return Split::Degenerate;
+    }
+    let flat = flatten(&points, normal);
+    // Corners at the place of the one before them would only make empty triangles.
+    let mut ring: Vec<u32> = Vec::with_capacity(n);
+    for i in 0..n {
+        if ring.last().is_none_or(|&last| points[last as usize] != points[i]) {
+            ring.push(i as u32);
+        }
+    }
+    while ring.len() > 1 && points[ring[0] as usize] == points[ring[ring.len() - 1] as usize] {
+        ring.pop();
+    }
+    if ring.len() < 3 {
+        return Split::Degenerate;
+    }
+    if is_convex(&ring, &flat) {
+        out.extend((1..ring.len() - 1).map(|i| [ring[0], ring[i], ring[i + 1]]));
+        return Split::Exact;
+    }
+    clip_ears(&ring, &flat, out)
+}
+
+/// Projects along the axis that `normal` is nearest to, keeping the winding counter-clockwise.
+fn flatten(points: &[DVec3], normal: DVec3) -> Vec<DVec2> {
+    let a = normal.abs();
+    let project: fn(DVec3) -> DVec2 = match (a.x >= a.y && a.x >= a.z, a.y >= a.z) {
+        (true, _) if normal.x > 0.0 => |p| DVec2::new(p.y, p.z),
+        (true, _) => |p| DVec2::new(p.z, p.y),
+        (false, true) if normal.y > 0.0 => |p| DVec2::new(p.z, p.x),
+        (false, true) => |p| DVec2::new(p.x, p.z),
+        (false, false) if normal.z > 0.0 => |p| DVec2::new(p.x, p.y),
+        (false, false) => |p| DVec2::new(p.y, p.x),
+    };
+    points.iter().map(|&p| project(p)).collect()
+}
+
+/// Twice the signed area of a triangle.
+fn area2(a: DVec2, b: DVec2, c: DVec2) -> f64 {
+    (b - a).perp_dot(c - a)
+}
+
+/// Whether every corner turns left (or goes straight on) and the corners go around once.
+fn is_convex(ring: &[u32], flat: &[DVec2]) -> bool {
+    let at = |i: usize| flat[ring[i % ring.len()] as usize];
+    let turns_left = (0..ring.len()).all(|i| area2(at(i), at(i + 1), at(i + 2)) >= 0.0);
+    // Seen from corner 0, the others must follow each other counter-clockwise; a pentagram's do not.
+    turns_left && (1..ring.len() - 1).all(|i| area2(at(0), at(i), at(i + 1)) >= 0.0)
+}
+
+/// The polygon that is left while ears are clipped.
+struct Clipper<'a> {
+    flat: &'a [DVec2],
+    /// Corner numbers; the links below are places in this list.
+    ring: &'a [u32],
+    next: Vec<u32>,
+    previous: Vec<u32>,
+    clipped: Vec<bool>,
+    /// Places that may be reflex (or straight); those that are not any more are skipped.
+    reflex: Vec<u32>,
+    tests: u64,
+}
+
+impl Clipper<'_> {
+    fn point(&self, place: u32) -> DVec2 {
+        self.flat[self.ring[place as usize] as usize]
+    }
+
+    fn neighbours(&self, place: u32) -> (u32, u32) {
+        (self.previous[place as usize], self.next[place as usize])
+    }
+
+    fn turn(&self, place: u32) -> f64 {
+        let (p, n) = self.neighbours(place);
+        area2(self.point(p), self.point(place), self.point(n))
+    }
+
+    /// Whether the triangle at `place` has an area and no reflex corner lies in it. `lenient`: corners on its edges
+    /// do not count (a bridge to a hole has two edges at the same place).
+    fn is_ear(&mut self, place: u32, lenient: bool) -> bool {
+        if self.turn(place) <= 0.0 {
+            return false;
+        }
+        let (p, n) = self.neighbours(place);
+        let (a, b, c) = (self.point(p), self.point(place), self.point(n));
+        let mut tests = 0;
+        let blocked = self.reflex.iter().any(|&r| {
+            tests += 1;
+            if self.clipped[r as usize] || r == p || r == n || r == place {
+                return false;
+            }
+            let q = self.point(r);
+            if q == a || q == b || q == c {
+                return false;
+            }
+            let (u, v, w) = (area2(a, b, q), area2(b, c, q), area2(c, a, q));
+            if lenient { u > 0.0 && v > 0.0 && w > 0.0 } else { u >= 0.0 && v >= 0.0 && w >= 0.0 }
+        });
+        self.tests += tests;
+        !blocked
+    }
+
+    /// Takes a corner out of the polygon.
+    fn clip(&mut self, place: u32) -> [u32; 3] {
+        let (p, n) = self.neighbours(place);
+        self.next[p as usize] = n;
+        self.previous[n as usize] = p;
+        self.clipped[place as usize] = true;
+        [self.ring[p as usize], self.ring[place as usize], self.ring[n as usize]]
+    }
+}
+
+fn clip_ears(ring: &[u32], flat: &[DVec2], out: &mut Vec<[u32; 3]>) -> Split {
+    let count = ring.len() as u32;
+    let mut clipper = Clipper {
+        flat,
+        ring,
+        next: (0..count).map(|i| (i + 1) % count).collect(),
+        previous: (0..count).map(|i| (i + count - 1) % count).collect(),
+        clipped: vec![false; ring.len()],
+        reflex: Vec::new(),
+        tests: 0,
+    };
+    clipper.reflex = (0..count).filter(|&i| clipper.turn(i) <= 0.0).collect();
+    let mut left = count;
+    let mut outcome = Split::Exact;
+    let mut lenient = false;
+    let mut anchor = 0; // a place that is still in the polygon
+    'rounds: while left > 3 {
+        // All places that are left are looked at; then only neighbours of clipped ears.
+        let mut candidates: Vec<u32> = Vec::with_capacity(left as usize);
+        let mut place = anchor;
+        for _ in 0..left {
+            candidates.push(place);
+            place = clipper.next[place as usize];
+        }
+        candidates.reverse();
+        let before = left;
+        while let Some(place) = candidates.pop() {
+            if clipper.tests > MAX_TESTS {
+                outcome = Split::Approximate;
+                break 'rounds;
+            }
+            if left <= 3 || clipper.clipped[place as usize] || !clipper.is_ear(place, lenient) {
+                continue;
+            }
+            let (p, n) = clipper.neighbours(place);
+            out.push(clipper.clip(place));
+            left -= 1;
+            anchor = n;
+            // The far neighbour first: going on with the corner after next keeps triangles from becoming slivers.
+            candidates.extend([p, n]);
+        }
+        clipper.reflex.retain(|&r| !clipper.clipped[r as usize]);
+        if before != left {
+            lenient = false;
+        } else if !lenient {
+            lenient = true;
+        } else {
+            // No ears: what is left has no area, or crosses itself.
+            let mut place = anchor;
+            let bends = (0..left).any(|_| {
+                place = clipper.next[place as usize];
+                clipper.turn(place) != 0.0
+            });
+            if bends {
+                outcome = Split::Approximate;
+            } else {
+                left = 0;
+            }
+            break;
+        }
+    }
+    // The last triangle, or a fan of what could not be clipped.
+    if left >= 3 {
+        let first = anchor;
+        let mut b = clipper.next[first as usize];
+        let mut c = clipper.next[b as usize];
+        while c != first {
+            out.push([ring[first as usize], ring[b as usize], ring[c as usize]]);
+            (b, c) = (c, clipper.next[c as usize]);
+        }
+    }
+    outcome
+}
