@@ -8,6 +8,8 @@
 pub mod error;
 pub mod kdtree;
 pub mod math;
+pub mod metrics;
+pub mod picture;
 pub mod scene;
 
 pub use error::{Error, Result};
