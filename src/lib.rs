@@ -6,6 +6,7 @@
 //! scene files -> [`scene::Scene`] -> [`kdtree::KdTree`] -> device buffers -> stages -> frame -> PNG.
 
 pub mod backend;
+pub mod builtin;
 pub mod camera;
 pub mod error;
 pub mod kdtree;
