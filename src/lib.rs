@@ -8,6 +8,8 @@
 pub mod error;
 pub mod kdtree;
 pub mod math;
+pub mod opencl;
+pub mod profiles;
 pub mod scene;
 
 pub use error::{Error, Result};
