@@ -12,6 +12,7 @@ pub mod fallback;
 pub mod frame;
 pub mod kdtree;
 pub mod kernels;
+pub mod layers;
 pub mod layout;
 pub mod math;
 pub mod metrics;
