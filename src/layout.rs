@@ -306,6 +306,38 @@ pub struct TriangleShading {
 }
 const _: () = assert!(size_of::<TriangleShading>() == 48);
 
+/// What the probe kernel must report: sizes and offsets in bytes, in its order.
+pub fn expected_probe() -> Vec<u32> {
+    use std::mem::offset_of;
+    let bytes: [usize; 24] = [
+        size_of::<FrameParams>(),
+        offset_of!(FrameParams, up),
+        offset_of!(FrameParams, bounds_max),
+        offset_of!(FrameParams, width),
+        offset_of!(FrameParams, plane_pitch),
+        offset_of!(FrameParams, epsilon),
+        size_of::<StepParams>(),
+        offset_of!(StepParams, reference_dx),
+        offset_of!(StepParams, item_count),
+        offset_of!(StepParams, t_pos),
+        offset_of!(StepParams, tests),
+        offset_of!(StepParams, scan_group),
+        size_of::<Light>(),
+        offset_of!(Light, intensity),
+        size_of::<Material>(),
+        offset_of!(Material, transmission),
+        offset_of!(Material, surface),
+        offset_of!(Material, cutout_texture),
+        size_of::<Texture>(),
+        offset_of!(Texture, height),
+        size_of::<TriangleShading>(),
+        offset_of!(TriangleShading, object),
+        offset_of!(TriangleShading, texcoords) + 5 * size_of::<f32>(),
+        offset_of!(TriangleShading, material),
+    ];
+    bytes.iter().map(|&b| b as u32).collect()
+}
+
 /// The tables buffer: 256 decoded sRGB bytes, 257 thresholds, and the guesses of the encoder.
 pub fn tables() -> Vec<u32> {
     let decode = |value: f64| if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) };

@@ -169,3 +169,47 @@ impl Kernel {
         }
     }
 }
+
+/// What a kernel argument is bound to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Binding {
+    /// The frame's parameters alone.
+    Frame,
+    /// The frame's parameters and all scene arrays: `SCENE_PARAMS` of `kernels/types.h`.
+    Scene,
+    /// The launch's `StepParams`, by value.
+    Step,
+    /// Attribute planes.
+    Attributes,
+    /// The picture.
+    Color,
+    /// Counter planes.
+    Counters,
+    /// Packed pixel addresses.
+    List,
+    /// Mask words of the packing.
+    Masks,
+    /// Scan levels of the packing.
+    Sums,
+    /// Local memory for a scan: two words per work-item.
+    Scratch,
+}
+
+impl Kernel {
+    /// The kernel's arguments, in order.
+    pub fn bindings(self) -> &'static [Binding] {
+        use Binding::*;
+        match self {
+            Kernel::Step1 | Kernel::Step2a | Kernel::Step3a | Kernel::Step4Sweep => {
+                &[Scene, Step, Attributes, Color, Counters]
+            }
+            Kernel::Step2c | Kernel::Step3c | Kernel::Step4Trace => &[Scene, Step, List, Attributes, Color, Counters],
+            Kernel::Step2bCount | Kernel::Step3bCount => &[Frame, Step, Attributes, Masks, Sums],
+            Kernel::Step2bScan | Kernel::Step3bScan | Kernel::Step4Scan => &[Step, Sums, Scratch],
+            Kernel::Step2bScatter | Kernel::Step3bScatter => &[Step, Masks, Sums, List],
+            Kernel::Step4Mark => &[Frame, Step, Attributes, List],
+            Kernel::Step4Count => &[Frame, Step, Attributes, List, Masks, Sums],
+            Kernel::Step4Scatter => &[Frame, Step, Masks, Sums, List, List],
+        }
+    }
+}

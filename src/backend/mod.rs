@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Where kernels run: on an OpenCL device or as their CPU twins, behind one interface.
 
+pub mod opencl;
 pub mod twin;
 
 use crate::error::Result;

@@ -8,9 +8,7 @@
 //! from above. Only the few bins that can hold the cheapest plane are sorted and swept.
 
 use super::clip::{Cell, Primitive};
-
-/// Up to here every candidate is counted against every primitive: no sorting at all.
-const SMALL: usize = 16;
+use crate::math::{clamp, max2, min2};
 
 /// Most bins on an axis.
 const MAX_BINS: usize = 256;
@@ -77,22 +75,19 @@ impl AxisCost {
 
     /// With the lower child ending at `end` and the upper one starting at `start` (the same for a real plane).
     #[inline]
-    fn of_parts(&self, end: f32, start: f32, lower: usize, upper: usize) -> f32 {
+    fn of_parts(&self, end: f32, start: f32, lower: f32, upper: f32) -> f32 {
         let lower_area = self.section + self.slope * (end - self.lo);
         let upper_area = self.section + self.slope * (self.hi - start);
-        let tests = lower as f32 * lower_area + upper as f32 * upper_area;
+        let tests = lower * lower_area + upper * upper_area;
         let cost = self.costs.traversal + self.costs.intersection * tests;
-        if lower == 0 || upper == 0 { cost * self.costs.empty_factor } else { cost }
+        if min2(lower, upper) == 0.0 { cost * self.costs.empty_factor } else { cost }
     }
 
     /// With the plane at `position`, if it lies strictly within the cell; else infinite.
     #[inline]
-    fn at(&self, position: f32, lower: usize, upper: usize) -> f32 {
-        if position > self.lo && position < self.hi {
-            self.of_parts(position, position, lower, upper)
-        } else {
-            f32::INFINITY
-        }
+    fn at(&self, position: f32, lower: f32, upper: f32) -> f32 {
+        let cost = self.of_parts(position, position, lower, upper);
+        if (position > self.lo) & (position < self.hi) { cost } else { f32::INFINITY }
     }
 }
 
@@ -116,15 +111,69 @@ impl Best {
 
 /// Memory that is used again from node to node.
 pub(super) struct Scratch {
-    starts: [[u32; MAX_BINS]; 3],
-    ends: [[u32; MAX_BINS]; 3],
+    axes: [AxisCounts; 3],
     lows: Vec<i32>,
     highs: Vec<i32>,
 }
 
 impl Scratch {
     pub fn new() -> Self {
-        Scratch { starts: [[0; MAX_BINS]; 3], ends: [[0; MAX_BINS]; 3], lows: Vec::new(), highs: Vec::new() }
+        Scratch { axes: [AxisCounts::NEW; 3], lows: Vec::new(), highs: Vec::new() }
+    }
+}
+
+/// What is known about the bins of an axis.
+#[derive(Clone, Copy)]
+struct AxisCounts {
+    /// Primitives whose bounds start in a bin.
+    starts: [i32; MAX_BINS],
+    /// Primitives whose bounds end in a bin.
+    ends: [i32; MAX_BINS],
+    /// Primitives that start below a bin.
+    lower: [i32; MAX_BINS],
+    /// Primitives that end in a bin or above it; one more entry for what lies behind the last bin.
+    upper: [i32; MAX_BINS + 1],
+    /// No plane in a bin is cheaper than this.
+    floors: [f32; MAX_BINS],
+    /// Whether the cheapest plane may lie in a bin.
+    open: [bool; MAX_BINS],
+}
+
+impl AxisCounts {
+    const NEW: Self = AxisCounts {
+        starts: [0; MAX_BINS],
+        ends: [0; MAX_BINS],
+        lower: [0; MAX_BINS],
+        upper: [0; MAX_BINS + 1],
+        floors: [0.0; MAX_BINS],
+        open: [false; MAX_BINS],
+    };
+
+    /// Adds up the counts, sets `floors`, and returns a cost that the cheapest plane does not exceed: the lowest at a
+    /// bin's edge, for between two candidates the cost is linear, so that one of them is at least as cheap.
+    fn bound(&mut self, bins: usize, cost: &AxisCost, binning: &Binning, count: usize) -> f32 {
+        let (mut lower, mut upper) = (0, count as i32);
+        for bin in 0..bins {
+            self.lower[bin] = lower;
+            self.upper[bin] = upper;
+            lower += self.starts[bin];
+            upper -= self.ends[bin];
+        }
+        self.upper[bins] = upper;
+        // Edges are known only to within rounding (which matters in thin cells far from the origin).
+        let reach = max2(cost.lo.abs(), cost.hi.abs());
+        let slack = 0.01 * binning.width + 2.0 * f32::EPSILON * reach;
+        let mut ceiling = f32::INFINITY;
+        let (lowers, uppers) = (&self.lower[..bins], &self.upper[..bins + 1]);
+        for (bin, floor) in self.floors[..bins].iter_mut().enumerate() {
+            let (edge, next) = (binning.edge(bin as i32 as f32), binning.edge(bin as i32 as f32 + 1.0));
+            let (lower, upper, upper_next) = (lowers[bin] as f32, uppers[bin] as f32, uppers[bin + 1] as f32);
+            let at_edge = cost.of_parts(edge + slack, edge - slack, lower, upper);
+            let inside = (edge > cost.lo) & (edge < cost.hi);
+            ceiling = min2(if inside { at_edge } else { f32::INFINITY }, ceiling);
+            *floor = cost.of_parts(max2(edge - slack, cost.lo), min2(next + slack, cost.hi), lower, upper_next);
+        }
+        ceiling
     }
 }
 
@@ -136,40 +185,57 @@ pub(super) fn best_split(primitives: &[Primitive], cell: &Cell, costs: &Costs, s
     }
     let axes = [0, 1, 2].map(|axis| AxisCost::new(cell, axis, costs));
     let mut best = Best { split: None, cost: leaf_cost };
-    if primitives.len() <= SMALL {
-        search_small(primitives, &axes, &mut best);
-    } else {
-        search_binned(primitives, &axes, &mut best, scratch);
+    match primitives.len() {
+        0..=4 => search_small::<4, 8>(primitives, &axes, &mut best),
+        5..=8 => search_small::<8, 16>(primitives, &axes, &mut best),
+        9..=16 => search_small::<16, 32>(primitives, &axes, &mut best),
+        17..=32 => search_small::<32, 64>(primitives, &axes, &mut best),
+        _ => search_binned(primitives, &axes, &mut best, scratch),
     }
     best.split
 }
 
-fn search_small(primitives: &[Primitive], axes: &[AxisCost; 3], best: &mut Best) {
+/// Counts every candidate against every primitive, on all axes. `N` is at least the number of primitives, `M = 2 N`:
+/// arrays of fixed sizes and no branches, so that the compiler does it in vectors.
+fn search_small<const N: usize, const M: usize>(primitives: &[Primitive], axes: &[AxisCost; 3], best: &mut Best) {
     for (axis, axis_cost) in axes.iter().enumerate() {
-        // Padded with what counts on neither side, so that the compiler can count in vectors.
-        let mut lows = [f32::INFINITY; SMALL];
-        let mut highs = [f32::NEG_INFINITY; SMALL];
-        for (i, p) in primitives.iter().enumerate() {
-            lows[i] = p.lo[axis];
-            highs[i] = p.hi[axis];
+        let mut positions = [f32::INFINITY; M];
+        for (i, p) in primitives.iter().enumerate().take(N) {
+            positions[i] = p.lo[axis];
+            positions[N + i] = p.hi[axis];
         }
-        for i in 0..primitives.len() {
-            for position in [lows[i], highs[i]] {
-                let lower: u32 = lows.iter().map(|&lo| (lo < position) as u32).sum();
-                let upper: u32 = highs.iter().map(|&hi| (hi > position) as u32).sum();
-                let (lower, upper) = (lower as usize, upper as usize);
-                best.offer(axis_cost.at(position, lower, upper), axis, position, lower, upper);
+        let (mut lower, mut upper) = ([0i32; M], [0i32; M]);
+        for p in primitives {
+            let (lo, hi) = (p.lo[axis], p.hi[axis]);
+            for i in 0..M {
+                lower[i] += (lo < positions[i]) as i32;
+                upper[i] += (hi > positions[i]) as i32;
+            }
+        }
+        let mut costs = [0.0; M];
+        let mut cheapest = f32::INFINITY;
+        for i in 0..M {
+            costs[i] = axis_cost.at(positions[i], lower[i] as f32, upper[i] as f32);
+            cheapest = min2(costs[i], cheapest);
+        }
+        // Axes in turn and lowest position first, as the sweep would find it.
+        if cheapest < best.cost {
+            for i in 0..M {
+                best.offer(costs[i], axis, positions[i], lower[i] as usize, upper[i] as usize);
             }
         }
     }
 }
 
-/// Maps positions to bins; never decreasing, so that equal positions share a bin.
+/// Adding this leaves the nearest integer to a small float in the lowest bits.
+const ROUND: f32 = (1 << 23) as f32;
+
+/// Maps positions on an axis to bins; never decreasing, so that equal positions share a bin.
 #[derive(Clone, Copy)]
 struct Binning {
     base: f32,
     scale: f32,
-    last: i32,
+    last: f32,
     width: f32,
 }
 
@@ -177,18 +243,22 @@ impl Binning {
     fn new(lo: f32, hi: f32, bins: usize) -> Self {
         let width = (hi - lo) / bins as f32;
         let scale = if width > 0.0 { 1.0 / width } else { 0.0 };
-        Binning { base: lo, scale: if scale.is_finite() { scale } else { 0.0 }, last: bins as i32 - 1, width }
+        // Bins are rounded to nearest, hence the half.
+        let last = bins as f32 - 1.0;
+        Binning { base: lo + 0.5 * width, scale: if scale.is_finite() { scale } else { 0.0 }, last, width }
     }
 
     #[inline]
     fn bin(&self, position: f32) -> usize {
-        // The conversion saturates, and NaN (from infinite ranges) becomes 0.
-        (((position - self.base) * self.scale) as i32).clamp(0, self.last) as usize
+        let scaled = clamp((position - self.base) * self.scale, 0.0, self.last);
+        // Faster than a conversion, and all axes at once in vectors.
+        (scaled + ROUND).to_bits() as usize % MAX_BINS
     }
 
     /// The lower edge of a bin.
-    fn edge(&self, bin: usize) -> f32 {
-        self.base + bin as f32 * self.width
+    #[inline]
+    fn edge(&self, bin: f32) -> f32 {
+        self.base + (bin - 0.5) * self.width
     }
 }
 
@@ -209,55 +279,37 @@ fn search_binned(primitives: &[Primitive], axes: &[AxisCost; 3], best: &mut Best
     let (mut lo, mut hi) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
     for p in primitives {
         for a in 0..3 {
-            lo[a] = if p.lo[a] < lo[a] { p.lo[a] } else { lo[a] };
-            hi[a] = if p.hi[a] > hi[a] { p.hi[a] } else { hi[a] };
+            lo[a] = min2(p.lo[a], lo[a]);
+            hi[a] = max2(p.hi[a], hi[a]);
         }
     }
     let binnings = [0, 1, 2].map(|a| Binning::new(lo[a], hi[a], bins));
-    for a in 0..3 {
-        scratch.starts[a][..bins].fill(0);
-        scratch.ends[a][..bins].fill(0);
+    for axis in &mut scratch.axes {
+        axis.starts[..bins].fill(0);
+        axis.ends[..bins].fill(0);
     }
     for p in primitives {
+        let starts = [0, 1, 2].map(|a| binnings[a].bin(p.lo[a]));
+        let ends = [0, 1, 2].map(|a| binnings[a].bin(p.hi[a]));
         for a in 0..3 {
-            scratch.starts[a][binnings[a].bin(p.lo[a])] += 1;
-            scratch.ends[a][binnings[a].bin(p.hi[a])] += 1;
+            scratch.axes[a].starts[starts[a]] += 1;
+            scratch.axes[a].ends[ends[a]] += 1;
         }
     }
 
-    // From above: the cost of planes at bin edges. Between candidates the cost is linear, so a candidate is as cheap.
-    let count = primitives.len();
     let mut ceiling = best.cost;
     for a in 0..3 {
-        let (mut lower, mut upper) = (0, count);
-        for bin in 0..bins {
-            let cost = axes[a].at(binnings[a].edge(bin), lower, upper);
-            ceiling = if cost < ceiling { cost } else { ceiling };
-            lower += scratch.starts[a][bin] as usize;
-            upper -= scratch.ends[a][bin] as usize;
-        }
+        ceiling = min2(scratch.axes[a].bound(bins, &axes[a], &binnings[a], primitives.len()), ceiling);
     }
     // Rounding must not hide a candidate that is as cheap as an edge.
     ceiling *= 1.0 + 1.0e-5;
 
-    for a in 0..3 {
-        let (starts, ends) = (&scratch.starts[a], &scratch.ends[a]);
-        let mut open = [false; MAX_BINS];
+    for (a, (axis_cost, binning)) in axes.iter().zip(&binnings).enumerate() {
+        let counts = &mut scratch.axes[a];
         let mut any = false;
-        let (mut lower, mut upper) = (0, count);
         for bin in 0..bins {
-            let (first, last) = (starts[bin] as usize, ends[bin] as usize);
-            upper -= last;
-            if first + last > 0 {
-                // Edges moved outwards a little: positions near them may have been rounded into this bin.
-                let slack = 0.01 * binnings[a].width;
-                let end = (binnings[a].edge(bin) - slack).max(axes[a].lo);
-                let start = (binnings[a].edge(bin + 1) + slack).min(axes[a].hi);
-                let floor = axes[a].of_parts(end, start, lower, upper);
-                open[bin] = floor <= ceiling;
-                any |= open[bin];
-            }
-            lower += first;
+            counts.open[bin] = counts.floors[bin] <= ceiling && counts.starts[bin] + counts.ends[bin] > 0;
+            any |= counts.open[bin];
         }
         if !any {
             continue;
@@ -265,28 +317,22 @@ fn search_binned(primitives: &[Primitive], axes: &[AxisCost; 3], best: &mut Best
         scratch.lows.clear();
         scratch.highs.clear();
         for p in primitives {
-            if open[binnings[a].bin(p.lo[a])] {
+            if counts.open[binning.bin(p.lo[a])] {
                 scratch.lows.push(sort_key(p.lo[a]));
             }
-            if open[binnings[a].bin(p.hi[a])] {
+            if counts.open[binning.bin(p.hi[a])] {
                 scratch.highs.push(sort_key(p.hi[a]));
             }
         }
         scratch.lows.sort_unstable();
         scratch.highs.sort_unstable();
         let (mut i, mut j) = (0, 0);
-        let (mut lower, mut upper) = (0, count);
-        for bin in 0..bins {
-            let (first, last) = (starts[bin] as usize, ends[bin] as usize);
-            if open[bin] {
-                let lows = &scratch.lows[i..i + first];
-                let highs = &scratch.highs[j..j + last];
-                sweep(lows, highs, a, &axes[a], lower, upper, best);
-                i += first;
-                j += last;
-            }
-            lower += first;
-            upper -= last;
+        for bin in (0..bins).filter(|&bin| counts.open[bin]) {
+            let (first, last) = (counts.starts[bin] as usize, counts.ends[bin] as usize);
+            let (lows, highs) = (&scratch.lows[i..i + first], &scratch.highs[j..j + last]);
+            sweep(lows, highs, a, axis_cost, counts.lower[bin] as usize, counts.upper[bin] as usize, best);
+            i += first;
+            j += last;
         }
     }
 }
@@ -313,10 +359,111 @@ fn sweep(
             j += 1;
             upper -= 1;
         }
-        best.offer(axis_cost.at(position, lower, upper), axis, position, lower, upper);
+        best.offer(axis_cost.at(position, lower as f32, upper as f32), axis, position, lower, upper);
         while i < lows.len() && from_sort_key(lows[i]) == position {
             i += 1;
             lower += 1;
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const COSTS: Costs = Costs { traversal: 1.0, intersection: 0.5, empty_factor: 0.8 };
+
+    /// The plain search: every candidate, everything counted anew.
+    fn full_sweep(primitives: &[Primitive], cell: &Cell) -> Option<Split> {
+        let mut best = Best { split: None, cost: COSTS.intersection * primitives.len() as f32 };
+        for axis in 0..3 {
+            let axis_cost = AxisCost::new(cell, axis, &COSTS);
+            let mut positions: Vec<f32> = primitives.iter().flat_map(|p| [p.lo[axis], p.hi[axis]]).collect();
+            positions.sort_by(f32::total_cmp);
+            positions.dedup();
+            for position in positions {
+                let lower = primitives.iter().filter(|p| p.lo[axis] < position).count();
+                let upper = primitives.iter().filter(|p| p.hi[axis] > position).count();
+                let cost = axis_cost.at(position, lower as f32, upper as f32);
+                best.offer(cost, axis, position, lower, upper);
+            }
+        }
+        best.split
+    }
+
+    struct Random(u32);
+
+    impl Random {
+        fn unit(&mut self) -> f32 {
+            self.0 = self.0.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (self.0 >> 8) as f32 / (1 << 24) as f32
+        }
+    }
+
+    /// Boxes in `cell`, on a grid of `grid` steps if that is not 0.
+    fn boxes(random: &mut Random, count: usize, size: f32, grid: f32, cell: &Cell) -> Vec<Primitive> {
+        (0..count as u32)
+            .map(|id| {
+                let mut p = Primitive { lo: [0.0; 3], id, hi: [0.0; 3], unused: 0 };
+                for a in 0..3 {
+                    let mut lo = random.unit();
+                    // Squared, so that boxes are crowded on one side.
+                    lo *= lo;
+                    let mut hi = lo + random.unit() * size;
+                    if grid > 0.0 {
+                        (lo, hi) = ((lo * grid).floor() / grid, (hi * grid).floor() / grid);
+                    }
+                    let extent = cell.hi[a] - cell.lo[a];
+                    p.lo[a] = (cell.lo[a] + lo * extent).min(cell.hi[a].next_down());
+                    p.hi[a] = (cell.lo[a] + hi * extent).min(cell.hi[a]).max(p.lo[a].next_up());
+                }
+                p
+            })
+            .collect()
+    }
+
+    #[test]
+    fn the_search_finds_what_the_full_sweep_finds() {
+        let cells = [
+            Cell { lo: [0.0; 3], hi: [1.0; 3] },
+            Cell { lo: [-5.0, 1.0, -0.001], hi: [9.0, 1.25, 0.001] },
+            // A few dozen units in the last place thick, far from the origin.
+            Cell { lo: [100.0, 0.0, 0.0], hi: [100.0 + 64.0 * 7.6e-6, 7.0, 8.0] },
+        ];
+        let mut random = Random(1);
+        let mut scratch = Scratch::new();
+        let mut splits = 0;
+        for count in (1..70).chain([100, 127, 128, 300, 1000, 1024, 3000]) {
+            for (i, cell) in cells.iter().enumerate() {
+                for (size, grid) in [(0.02, 0.0), (0.3, 0.0), (0.1, 16.0), (0.1, 100.0)] {
+                    let primitives = boxes(&mut random, count, size, grid, cell);
+                    let found = best_split(&primitives, cell, &COSTS, &mut scratch);
+                    assert_eq!(found, full_sweep(&primitives, cell), "{count} boxes of {size}, grid {grid}, cell {i}");
+                    splits += found.is_some() as usize;
+                }
+            }
+        }
+        assert!(splits > 500, "only {splits} splits");
+    }
+
+    #[test]
+    fn equal_boxes_are_not_split_but_cut_out() {
+        let cell = Cell { lo: [0.0; 3], hi: [1.0; 3] };
+        let full = Primitive { lo: cell.lo, id: 0, hi: cell.hi, unused: 0 };
+        let mut scratch = Scratch::new();
+        for count in [3, 20, 1000] {
+            assert_eq!(best_split(&vec![full; count], &cell, &COSTS, &mut scratch), None);
+            let small = Primitive { hi: [1.0, 0.125, 1.0], ..full };
+            let split = best_split(&vec![small; count], &cell, &COSTS, &mut scratch);
+            let split = split.map(|s| (s.axis, s.position, s.lower, s.upper));
+            assert_eq!(split, Some((1, 0.125, count, 0)));
+        }
+    }
+
+    #[test]
+    fn sort_keys_keep_the_order() {
+        let values = [f32::NEG_INFINITY, -3.0, -1e-30, -0.0, 0.0, 1e-30, 2.0, f32::INFINITY];
+        assert!(values.map(sort_key).is_sorted_by(|a, b| a < b));
+        assert!(values.iter().all(|&v| from_sort_key(sort_key(v)).to_bits() == v.to_bits()));
     }
 }

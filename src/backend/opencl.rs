@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! An OpenCL device as a back end: one program per stage, built on first use, and one buffer per binding.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use super::{Backend, BackendInfo, BufferSizes, FrameBuffer};
+use crate::error::Result;
+use crate::kernels::{self, Mutation};
+use crate::layout::{self, BuildFlavour, FrameParams, StepParams};
+use crate::opencl::{AnyBuffer, Arg, Buffer, Door, Kernel as DeviceKernel, Launch, ProgramSource};
+use crate::scene_buffers::{SceneBuffers, Shading};
+use crate::stage::{Binding, Items, Kernel};
+
+/// Work-items of a scan's work-group, where the device allows as many.
+const SCAN_GROUP: usize = 256;
+/// Work-items of a one-dimensional launch's work-group.
+const LIST_GROUP: usize = 64;
+
+/// Runs kernels on an OpenCL device.
+pub struct OpenClBackend {
+    door: Door,
+    scene: SceneOnDevice,
+    buffers: Option<(BufferSizes, FrameOnDevice)>,
+    kernels: HashMap<(Kernel, BuildFlavour), DeviceKernel>,
+    flavour: BuildFlavour,
+    mutation: Option<Mutation>,
+    scan_group: u32,
+    program_ms: f64,
+}
+
+struct SceneOnDevice {
+    frame: Buffer<FrameParams>,
+    lights: Buffer<layout::Light>,
+    nodes: Buffer<crate::kdtree::KdNode>,
+    leaf_triangles: Buffer<u32>,
+    triangles: Buffer<layout::Triangle>,
+    triangle_shading: Buffer<layout::TriangleShading>,
+    materials: Buffer<layout::Material>,
+    object_materials: Buffer<u32>,
+    textures: Buffer<layout::Texture>,
+    texels: Buffer<u32>,
+    tables: Buffer<u32>,
+}
+
+struct FrameOnDevice {
+    attributes: Buffer<u32>,
+    counters: Buffer<u32>,
+    color: Buffer<u32>,
+    list: Buffer<u32>,
+    masks: Buffer<u32>,
+    sums: Buffer<u32>,
+}
+
+impl FrameOnDevice {
+    fn get(&self, buffer: FrameBuffer) -> &Buffer<u32> {
+        match buffer {
+            FrameBuffer::Attributes => &self.attributes,
+            FrameBuffer::Counters => &self.counters,
+            FrameBuffer::Color => &self.color,
+            FrameBuffer::List => &self.list,
+            FrameBuffer::Masks => &self.masks,
+            FrameBuffer::Sums => &self.sums,
+        }
+    }
+}
+
+impl OpenClBackend {
+    /// Uploads `scene` to the device behind `door`. `strict` kernels equal the CPU twin bit for bit.
+    ///
+    /// # Errors
+    /// A limit of the device or its profile, or a failing call.
+    pub fn new(door: Door, scene: &Arc<SceneBuffers>, strict: bool) -> Result<Self> {
+        let on_device = SceneOnDevice {
+            frame: door.buffer("frame", 1)?,
+            lights: door.buffer_from("lights", &scene.lights)?,
+            nodes: door.buffer_from("nodes", &scene.tree.nodes)?,
+            leaf_triangles: door.buffer_from("leaf_triangles", &scene.tree.leaf_triangles)?,
+            triangles: door.buffer_from("triangles", &scene.triangles)?,
+            triangle_shading: door.buffer_from("triangle_shading", &scene.triangle_shading)?,
+            materials: door.buffer_from("materials", &scene.materials)?,
+            object_materials: door.buffer_from("object_materials", &scene.object_materials)?,
+            textures: door.buffer_from("textures", &scene.textures)?,
+            texels: door.buffer_from("texels", &scene.texels)?,
+            tables: door.buffer_from("tables", &scene.tables)?,
+        };
+        let widest = door.limits().fit_work_group([SCAN_GROUP, 1], SCAN_GROUP as u64, true)[0];
+        // The scratch memory of a scan: two words per work-item.
+        let local_words = usize::try_from(door.limits().local_mem_bytes / 8).unwrap_or(usize::MAX).max(1);
+        let scan_group = previous_power_of_two(widest.min(local_words)) as u32;
+        Ok(OpenClBackend {
+            door,
+            scene: on_device,
+            buffers: None,
+            kernels: HashMap::new(),
+            flavour: BuildFlavour { strict, count: false, anchor: scene.shading == Shading::Anchor },
+            mutation: None,
+            scan_group,
+            program_ms: 0.0,
+        })
+    }
+
+    /// Breaks the kernels on purpose: for tests, and for the self-test's negative control.
+    pub fn mutate(&mut self, mutation: Option<Mutation>) {
+        self.mutation = mutation;
+        self.kernels.clear();
+    }
+
+    /// Milliseconds spent building programs so far.
+    pub fn program_ms(&self) -> f64 {
+        self.program_ms
+    }
+
+    /// The device.
+    pub fn door(&self) -> &Door {
+        &self.door
+    }
+
+    fn build(&mut self, kernel: Kernel) -> Result<()> {
+        if self.kernels.contains_key(&(kernel, self.flavour)) {
+            return Ok(());
+        }
+        let started = std::time::Instant::now();
+        let stage = kernel.stage();
+        let options = layout::build_options(self.flavour);
+        let source = kernels::stage_source(stage, self.mutation.as_ref());
+        let program = self.door.program(&ProgramSource { name: stage.name(), source: &source, options: &options })?;
+        for entry in Kernel::ALL.into_iter().filter(|k| k.stage() == stage) {
+            self.kernels.insert((entry, self.flavour), program.kernel(entry.name())?);
+        }
+        self.program_ms += started.elapsed().as_secs_f64() * 1e3;
+        Ok(())
+    }
+}
+
+fn previous_power_of_two(n: usize) -> usize {
+    1 << (usize::BITS - 1 - n.max(1).leading_zeros())
+}
+
+impl Backend for OpenClBackend {
+    fn info(&self) -> BackendInfo {
+        let info = self.door.info();
+        BackendInfo {
+            name: info.name.clone(),
+            version: format!("{}, driver {}", info.version, info.driver),
+            backend: "opencl",
+            profile: self.door.profile_name().unwrap_or("none").into(),
+        }
+    }
+
+    fn scan_group(&self) -> u32 {
+        self.scan_group
+    }
+
+    fn begin(&mut self, frame: &FrameParams, sizes: &BufferSizes) -> Result<()> {
+        if self.buffers.as_ref().map(|(s, _)| s) != Some(sizes) {
+            // Old buffers go first: both together may not fit.
+            self.buffers = None;
+            let door = &self.door;
+            let on_device = FrameOnDevice {
+                attributes: door.buffer("attributes", sizes.attributes)?,
+                counters: door.buffer("counters", sizes.counters)?,
+                color: door.buffer("color", sizes.color)?,
+                list: door.buffer("list", sizes.list)?,
+                masks: door.buffer("masks", sizes.masks)?,
+                sums: door.buffer("sums", sizes.sums)?,
+            };
+            self.buffers = Some((*sizes, on_device));
+        }
+        self.flavour.count = sizes.counters > 0;
+        self.door.write(&self.scene.frame, 0, std::slice::from_ref(frame))
+    }
+
+    fn run(&mut self, kernel: Kernel, step: &StepParams) -> Result<()> {
+        self.build(kernel)?;
+        let Some((_, buffers)) = &self.buffers else { return Ok(()) };
+        let device_kernel = &self.kernels[&(kernel, self.flavour)];
+        let scene = &self.scene;
+        let mut args: Vec<Arg> = Vec::with_capacity(20);
+        for binding in kernel.bindings() {
+            match binding {
+                Binding::Frame => args.push(Arg::Buffer(&scene.frame)),
+                Binding::Scene => {
+                    let all: [&dyn AnyBuffer; 11] = [
+                        &scene.frame,
+                        &scene.lights,
+                        &scene.nodes,
+                        &scene.leaf_triangles,
+                        &scene.triangles,
+                        &scene.triangle_shading,
+                        &scene.materials,
+                        &scene.object_materials,
+                        &scene.textures,
+                        &scene.texels,
+                        &scene.tables,
+                    ];
+                    args.extend(all.map(Arg::Buffer));
+                }
+                Binding::Step => args.push(Arg::value(step)),
+                Binding::Attributes => args.push(Arg::Buffer(&buffers.attributes)),
+                Binding::Color => args.push(Arg::Buffer(&buffers.color)),
+                Binding::Counters => args.push(Arg::Buffer(&buffers.counters)),
+                Binding::List => args.push(Arg::Buffer(&buffers.list)),
+                Binding::Masks => args.push(Arg::Buffer(&buffers.masks)),
+                Binding::Sums => args.push(Arg::Buffer(&buffers.sums)),
+                Binding::Scratch => args.push(Arg::Local(8 * step.scan_group as usize)),
+            }
+        }
+        let barrier = kernel.items() == Items::Groups;
+        let (global, local) = match kernel.items() {
+            Items::Grid => {
+                let wanted = self.door.choices().work_group(kernel.stage().name());
+                ([step.grid_width as usize, step.grid_height as usize], self.door.fit_work_group(device_kernel, wanted, false))
+            }
+            Items::List => ([step.item_count as usize, 1], self.door.fit_work_group(device_kernel, [LIST_GROUP, 1], false)),
+            Items::Chunks => (
+                [step.item_count.div_ceil(32) as usize, 1],
+                self.door.fit_work_group(device_kernel, [LIST_GROUP, 1], false),
+            ),
+            // The scan's levels depend on the group: it is not fitted but checked.
+            Items::Groups => ([step.item_count as usize, 1], [step.scan_group as usize, 1]),
+        };
+        if global.contains(&0) {
+            return Ok(());
+        }
+        self.door.launch(&Launch { label: kernel.name(), kernel: device_kernel, args: &args, global, local: Some(local), barrier })
+    }
+
+    fn read_sum(&mut self, at: u32) -> Result<u32> {
+        let at = at as usize;
+        Ok(self.read(FrameBuffer::Sums, at..at + 1)?.first().copied().unwrap_or(0))
+    }
+
+    fn read(&mut self, buffer: FrameBuffer, range: std::ops::Range<usize>) -> Result<Vec<u32>> {
+        match &self.buffers {
+            Some((_, buffers)) => self.door.read(buffers.get(buffer), range),
+            None => Ok(Vec::new()),
+        }
+    }
+
+    fn write(&mut self, buffer: FrameBuffer, words: &[u32]) -> Result<()> {
+        match &self.buffers {
+            Some((_, buffers)) => self.door.write(buffers.get(buffer), 0, words),
+            None => Ok(()),
+        }
+    }
+
+    fn take_timings(&mut self) -> Result<Vec<(Kernel, f64)>> {
+        let timings = self.door.take_timings()?;
+        let kernel = |label: &str| Kernel::ALL.into_iter().find(|k| k.name() == label);
+        Ok(timings.into_iter().filter_map(|(label, ms)| Some((kernel(label)?, ms))).collect())
+    }
+
+    fn peak_bytes(&self) -> u64 {
+        self.door.memory().peak_bytes
+    }
+}

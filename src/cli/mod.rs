@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! The command line: parses, calls the library, prints. Exit status: 0 good, 1 a comparison or self-test failed,
+//! 2 error.
+
+mod args;
+mod compare;
+mod devices;
+mod diff;
+mod doctor;
+mod output;
+mod progress;
+mod render;
+mod selftest;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+use rarefy::Result;
+
+use args::{Cli, Command};
+
+/// Runs the command that the process was started with.
+pub fn run() -> ExitCode {
+    // clap ends with status 2 on a wrong command line, as this program's errors do.
+    let cli = Cli::parse();
+    match dispatch(&cli.command) {
+        Ok(good) => ExitCode::from(if good { 0 } else { 1 }),
+        Err(error) => {
+            eprintln!("rarefy: {error}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn dispatch(command: &Command) -> Result<bool> {
+    match command {
+        Command::Render(args) => render::run(args).map(|()| true),
+        Command::Compare(args) => compare::run(args).map(|()| true),
+        Command::Diff(args) => diff::run(args).map(|()| true),
+        Command::Devices(args) => devices::run(args).map(|()| true),
+        Command::Selftest(args) => selftest::run(args),
+        Command::Doctor(args) => doctor::run(args).map(|()| true),
+        Command::MakeScene(args) => {
+            rarefy::builtin::write(&args.name, &args.output)?;
+            println!("{}", args.output.display());
+            Ok(true)
+        }
+    }
+}

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Compiled programs on disk: phones take seconds to build kernels, so that is done once per driver.
+//!
+//! An entry names everything that it depends on, and carries a checksum; whatever does not fit is built anew. Entries
+//! are written aside and renamed, so that processes may race. A cache that cannot be written costs time, nothing else.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::time::SystemTime;
+
+/// The variable that names the cache folder.
+pub(super) const FOLDER_VARIABLE: &str = "RAREFY_CACHE_DIR";
+
+const MAGIC: &[u8] = b"rarefy program 1\n";
+const SUFFIX: &str = "clbin";
+/// Beyond this many entries the oldest go: each edit of a kernel leaves one behind.
+const MOST_ENTRIES: usize = 256;
+
+/// Where compiled programs are kept.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub enum CacheFolder {
+    /// `RAREFY_CACHE_DIR`, else `rarefy` in `XDG_CACHE_HOME`, else `.cache/rarefy` in the home folder, else nowhere.
+    #[default]
+    Usual,
+    /// This folder, made when needed. An app gives its own cache folder.
+    At(PathBuf),
+    /// Nowhere: every program is built from its source.
+    Off,
+}
+
+impl CacheFolder {
+    /// The folder, if there is one.
+    pub fn path(&self) -> Option<PathBuf> {
+        let variable = |name: &str| std::env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);
+        match self {
+            CacheFolder::At(path) => Some(path.clone()),
+            CacheFolder::Off => None,
+            CacheFolder::Usual => variable(FOLDER_VARIABLE)
+                .or_else(|| variable("XDG_CACHE_HOME").map(|path| path.join("rarefy")))
+                .or_else(|| variable("HOME").map(|path| path.join(".cache").join("rarefy"))),
+        }
+    }
+}
+
+/// A cache of compiled programs.
+pub(super) struct Cache {
+    folder: Option<PathBuf>,
+}
+
+/// FNV-1a, 128 bits: no defence against malice, but no two of a person's kernels will ever meet.
+fn hash(parts: &[&[u8]]) -> u128 {
+    let mut state: u128 = 0x6c62_272e_07bb_0142_62b8_2175_6295_c58d;
+    let mut take = |byte: u8| state = (state ^ u128::from(byte)).wrapping_mul((1 << 88) + 0x13b);
+    for part in parts {
+        // The length first, so that moving a byte from one part to the next changes the hash.
+        (part.len() as u64).to_le_bytes().into_iter().for_each(&mut take);
+        part.iter().copied().for_each(&mut take);
+    }
+    state
+}
+
+/// What a compiled program depends on.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Key(u128);
+
+impl Key {
+    pub fn new(parts: &[&str]) -> Self {
+        Key(hash(&parts.iter().map(|part| part.as_bytes()).collect::<Vec<_>>()))
+    }
+}
+
+impl Cache {
+    pub fn new(folder: &CacheFolder) -> Self {
+        Cache { folder: folder.path() }
+    }
+
+    fn entry(&self, key: &Key) -> Option<PathBuf> {
+        Some(self.folder.as_ref()?.join(format!("{:032x}.{SUFFIX}", key.0)))
+    }
+
+    /// The binary for `key`, if there is a sound one.
+    pub fn load(&self, key: &Key) -> Option<Vec<u8>> {
+        let path = self.entry(key)?;
+        let bytes = std::fs::read(&path).ok()?;
+        let binary = unpack(key, &bytes);
+        if binary.is_none() {
+            log::info!("{}: a damaged or foreign cache entry, built anew", path.display());
+        }
+        binary.map(<[u8]>::to_vec)
+    }
+
+    /// Keeps the binary for `key`; failures are logged only.
+    pub fn store(&self, key: &Key, binary: &[u8]) {
+        let (Some(folder), Some(path)) = (&self.folder, self.entry(key)) else { return };
+        if let Err(error) = write_whole(folder, &path, &pack(key, binary)) {
+            log::info!("{}: compiled programs are not kept: {error}", folder.display());
+            return;
+        }
+        prune(folder);
+    }
+
+    /// Forgets the entry for `key`, which turned out to be of no use.
+    pub fn remove(&self, key: &Key) {
+        if let Some(path) = self.entry(key) {
+            // If it cannot be removed, it will be refused again the next time.
+            let _ = std::fs::remove_file(path);
+        }
+    }
+}
+
+fn pack(key: &Key, binary: &[u8]) -> Vec<u8> {
+    let mut bytes = MAGIC.to_vec();
+    bytes.extend_from_slice(&key.0.to_le_bytes());
+    bytes.extend_from_slice(&hash(&[binary]).to_le_bytes());
+    bytes.extend_from_slice(binary);
+    bytes
+}
+
+fn unpack<'a>(key: &Key, bytes: &'a [u8]) -> Option<&'a [u8]> {
+    let rest = bytes.strip_prefix(MAGIC)?.strip_prefix(&key.0.to_le_bytes())?;
+    let (checksum, binary) = rest.split_first_chunk::<16>()?;
+    (!binary.is_empty() && u128::from_le_bytes(*checksum) == hash(&[binary])).then_some(binary)
+}
+
+fn write_whole(folder: &Path, path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+    std::fs::create_dir_all(folder)?;
+    let mut file = tempfile::NamedTempFile::new_in(folder)?;
+    file.write_all(bytes)?;
+    file.persist(path).map_err(|error| error.error)?;
+    Ok(())
+}
+
+/// Removes the oldest entries beyond [`MOST_ENTRIES`].
+fn prune(folder: &Path) {
+    let Ok(files) = std::fs::read_dir(folder) else { return };
+    let mut entries: Vec<(SystemTime, PathBuf)> = files
+        .flatten()
+        .filter(|file| file.path().extension().is_some_and(|suffix| suffix == SUFFIX))
+        .filter_map(|file| Some((file.metadata().ok()?.modified().ok()?, file.path())))
+        .collect();
+    entries.sort();
+    let surplus = entries.len().saturating_sub(MOST_ENTRIES);
+    for (_, path) in entries.into_iter().take(surplus) {
+        // Another process may have been faster.
+        let _ = std::fs::remove_file(path);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    fn scratch() -> (tempfile::TempDir, Cache) {
+        let folder = tempfile::tempdir().unwrap();
+        let cache = Cache::new(&CacheFolder::At(folder.path().join("sub").join("cache")));
+        (folder, cache)
+    }
+
+    #[test]
+    fn what_is_stored_is_loaded() {
+        let (_folder, cache) = scratch();
+        let key = Key::new(&["device", "driver", "options", "source"]);
+        assert_eq!(cache.load(&key), None);
+        cache.store(&key, b"binary");
+        assert_eq!(cache.load(&key).unwrap(), b"binary");
+        cache.store(&key, b"newer");
+        assert_eq!(cache.load(&key).unwrap(), b"newer");
+        assert_eq!(cache.load(&Key::new(&["device", "driver", "options2", "source"])), None);
+        cache.remove(&key);
+        assert_eq!(cache.load(&key), None);
+    }
+
+    #[test]
+    fn every_damage_is_noticed() {
+        let (_folder, cache) = scratch();
+        let key = Key::new(&["a"]);
+        cache.store(&key, b"binary");
+        let path = cache.entry(&key).unwrap();
+        let sound = std::fs::read(&path).unwrap();
+        for index in 0..sound.len() {
+            let mut damaged = sound.clone();
+            damaged[index] ^= 0x10;
+            std::fs::write(&path, &damaged).unwrap();
+            assert_eq!(cache.load(&key), None, "byte {index}");
+            std::fs::write(&path, &sound[..index]).unwrap();
+            assert_eq!(cache.load(&key), None, "cut at {index}");
+        }
+        std::fs::write(&path, &sound).unwrap();
+        assert!(cache.load(&key).is_some());
+        // An entry of another key under this key's name.
+        let other = Key::new(&["b"]);
+        std::fs::copy(&path, cache.entry(&other).unwrap()).unwrap();
+        assert_eq!(cache.load(&other), None);
+    }
+
+    #[test]
+    fn an_unusable_folder_is_no_error() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("file");
+        std::fs::write(&file, "in the way").unwrap();
+        let key = Key::new(&["a"]);
+        for cache in [Cache::new(&CacheFolder::At(file.join("sub"))), Cache::new(&CacheFolder::Off)] {
+            cache.store(&key, b"binary");
+            assert_eq!(cache.load(&key), None);
+        }
+    }
+
+    #[test]
+    fn old_entries_go() {
+        let (_folder, cache) = scratch();
+        for number in 0..MOST_ENTRIES + 3 {
+            cache.store(&Key::new(&[&number.to_string()]), b"x");
+        }
+        let count = std::fs::read_dir(cache.folder.as_ref().unwrap()).unwrap().count();
+        assert_eq!(count, MOST_ENTRIES);
+    }
+
+    #[test]
+    fn the_hash_tells_parts_apart() {
+        assert_ne!(Key::new(&["ab", "c"]), Key::new(&["a", "bc"]));
+        assert_ne!(Key::new(&["ab"]), Key::new(&["ab", ""]));
+        // Of nothing: FNV's published offset basis for 128 bits.
+        assert_eq!(hash(&[]), 0x6c62272e07bb014262b821756295c58d);
+    }
+}

@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! One opened device: context, queue, limits, memory accounts.
+
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use opencl3::command_queue::{CL_QUEUE_PROFILING_ENABLE, create_command_queue, finish};
+use opencl3::context::context::create_context;
+
+use super::cache::{Cache, CacheFolder};
+use super::codes::check;
+use super::discover::{DeviceInfo, DeviceKind, discover_with};
+use super::handle::Handle;
+use super::limits::Limits;
+use super::slices::Planner;
+use super::timing::Timing;
+use crate::profiles::{Choices, Profile};
+use crate::{Error, Result};
+
+/// How to open a device.
+#[derive(Debug, Clone, Default)]
+pub struct OpenOptions {
+    /// Which device, in the order of [`super::Discovery::devices`]; `None`: the first.
+    pub index: Option<usize>,
+    /// The profile to obey; `None`: only the device's own limits.
+    pub profile: Option<Profile>,
+    /// An OpenCL library to try before all others. Only the first search of a process can choose.
+    pub library: Option<PathBuf>,
+    /// The most memory that buffers may use together, in bytes.
+    pub memory_budget_bytes: Option<u64>,
+    /// Where compiled programs are kept.
+    pub cache: CacheFolder,
+    /// For tests: the most work-items of every slice.
+    pub slice_items: Option<u64>,
+    /// For tests: this launch (counting enqueues from 0) fails with `CL_OUT_OF_RESOURCES`, as on a phone whose watchdog
+    /// struck.
+    pub fail_enqueue: Option<u64>,
+}
+
+/// The memory that a door's buffers use, in bytes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct MemoryUse {
+    /// Now.
+    pub current_bytes: u64,
+    /// The most at any time.
+    pub peak_bytes: u64,
+}
+
+/// What buffers, programs and kernels keep alive.
+pub(super) struct Shared {
+    // Fields drop in this order: queue before context.
+    pub queue: Handle,
+    pub context: Handle,
+    pub device: super::discover::DeviceId,
+    pub info: DeviceInfo,
+    pub limits: Limits,
+    budget_bytes: Option<u64>,
+    memory: Mutex<MemoryUse>,
+}
+
+impl Shared {
+    /// Counts `bytes` more, if the limits allow it.
+    pub fn reserve(&self, what: &str, bytes: u64) -> Result<()> {
+        let mut memory = lock(&self.memory);
+        self.limits.check_total(what, memory.current_bytes, bytes)?;
+        let total = memory.current_bytes.saturating_add(bytes);
+        if let Some(budget) = self.budget_bytes.filter(|&budget| total > budget) {
+            return Err(Error::LimitExceeded {
+                what: format!("{what}, with {} bytes in use", memory.current_bytes),
+                limit: "--memory-budget".into(),
+                wanted: format!("{total} bytes"),
+                allowed: format!("{budget} bytes"),
+                remedy: "raise the budget, or use a smaller picture or scene".into(),
+            });
+        }
+        memory.current_bytes = total;
+        memory.peak_bytes = memory.peak_bytes.max(total);
+        Ok(())
+    }
+
+    /// Counts `bytes` less.
+    pub fn release(&self, bytes: u64) {
+        let mut memory = lock(&self.memory);
+        memory.current_bytes = memory.current_bytes.saturating_sub(bytes);
+    }
+}
+
+/// What changes with each launch.
+pub(super) struct State {
+    pub planner: Planner,
+    pub timing: Timing,
+    pub enqueues: u64,
+    pub fail_enqueue: Option<u64>,
+}
+
+/// An opened OpenCL device: the only way to memory, programs and launches.
+///
+/// All commands go through one in-order queue, so that each sees what those before it wrote. A door may be used from
+/// several threads; launches take turns.
+pub struct Door {
+    pub(super) shared: Arc<Shared>,
+    pub(super) cache: Cache,
+    pub(super) state: Mutex<State>,
+    choices: Choices,
+    profile_name: Option<String>,
+}
+
+/// Locks, even after a panic in another thread: all state behind these locks is valid at any time.
+pub(super) fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Opens a device: number `index` of [`super::discover`], else the best, under a profile's limits if one is given.
+///
+/// Without a usable device the error is [`Error::NoOpenCl`] and lists everything that was tried.
+pub fn open(index: Option<usize>, profile: Option<&Profile>) -> Result<Door> {
+    open_with(&OpenOptions { index, profile: profile.cloned(), ..OpenOptions::default() })
+}
+
+/// As [`open`], with all options.
+pub fn open_with(options: &OpenOptions) -> Result<Door> {
+    let mut found = discover_with(options.library.as_deref());
+    let count = found.devices.len();
+    if count == 0 {
+        return Err(Error::NoOpenCl { tried: found.skipped });
+    }
+    let index = options.index.unwrap_or(0);
+    if index >= count {
+        let names: Vec<String> =
+            found.devices.iter().enumerate().map(|(n, device)| format!("{n} ({})", device.info.name)).collect();
+        let message = format!("there is no OpenCL device {index}; there are: {}", names.join(", "));
+        return Err(Error::option("--device", message));
+    }
+    let device = found.devices.swap_remove(index);
+    let limits = Limits::new(&device.profile, options.profile.as_ref());
+    let raw_context = create_context(&[device.id.0], std::ptr::null(), None, std::ptr::null_mut());
+    let context = Handle::context(check("clCreateContext", raw_context)?);
+    // SAFETY: context and device are valid and belong together. The call of OpenCL 1.2: later ones are missing on the
+    // phones that this library is for.
+    let raw_queue = unsafe { create_command_queue(context.raw(), device.id.0, CL_QUEUE_PROFILING_ENABLE) };
+    let queue = Handle::queue(check("clCreateCommandQueue", raw_queue)?);
+    log::info!("OpenCL device: {}", device.info.describe());
+    // A simulator's times say nothing about any watchdog.
+    let watchdog_ms = limits.watchdog_ms.filter(|_| !device.info.is_simulator());
+    let state = State {
+        planner: Planner::new(limits.slice_ms, options.slice_items),
+        timing: Timing::new(watchdog_ms),
+        enqueues: 0,
+        fail_enqueue: options.fail_enqueue,
+    };
+    let choices = options.profile.as_ref().unwrap_or(&device.profile).choices().clone();
+    Ok(Door {
+        shared: Arc::new(Shared {
+            queue,
+            context,
+            device: device.id,
+            info: device.info,
+            limits,
+            budget_bytes: options.memory_budget_bytes,
+            memory: Mutex::new(MemoryUse::default()),
+        }),
+        cache: Cache::new(&options.cache),
+        state: Mutex::new(state),
+        choices,
+        profile_name: options.profile.as_ref().map(|profile| profile.name().to_string()),
+    })
+}
+
+impl Door {
+    /// Who the device is.
+    pub fn info(&self) -> &DeviceInfo {
+        &self.shared.info
+    }
+
+    /// What may be asked of it: its own limits, clamped by the profile.
+    pub fn limits(&self) -> &Limits {
+        &self.shared.limits
+    }
+
+    /// What suits it: the profile's choices, else those for its type of device.
+    pub fn choices(&self) -> &Choices {
+        &self.choices
+    }
+
+    /// The profile that it obeys, if any.
+    pub fn profile_name(&self) -> Option<&str> {
+        self.profile_name.as_deref()
+    }
+
+    /// Whether the device is the host's processor.
+    pub fn is_cpu(&self) -> bool {
+        self.shared.info.kind == DeviceKind::Cpu
+    }
+
+    /// The memory that the door's buffers use.
+    pub fn memory(&self) -> MemoryUse {
+        *lock(&self.shared.memory)
+    }
+
+    /// Lets the peak start again from what is in use now.
+    pub fn reset_peak_memory(&self) {
+        let mut memory = lock(&self.shared.memory);
+        memory.peak_bytes = memory.current_bytes;
+    }
+
+    /// Waits for everything enqueued. A launch that failed on the device is an error here.
+    pub fn finish(&self) -> Result<()> {
+        let finished = check("clFinish", finish(self.shared.queue.raw()));
+        let state = &mut *lock(&self.state);
+        let harvested = state.timing.harvest(&mut state.planner, true);
+        // What failed first explains more than the queue's own answer.
+        harvested.and(finished)
+    }
+
+    /// Waits for everything enqueued and returns the milliseconds on the device per launch label since the last call,
+    /// in the order of first use.
+    pub fn take_timings(&self) -> Result<Vec<(&'static str, f64)>> {
+        self.finish()?;
+        Ok(lock(&self.state).timing.take())
+    }
+
+    /// The number of enqueued launches (slices) since the door was opened.
+    pub fn enqueues(&self) -> u64 {
+        lock(&self.state).enqueues
+    }
+}
+
+impl std::fmt::Debug for Door {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "Door to {}", self.shared.info.describe())
+    }
+}
