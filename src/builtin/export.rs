@@ -20,7 +20,7 @@ pub fn obj_text(model: &Model) -> String {
     for group in &model.groups {
         let mesh = &group.mesh;
         // Writing to a String cannot fail.
-        let _ = writeln!(out, "\no {}\ng {}", group.name, group.name);
+        let _ = writeln!(out, "\ng {}", group.name);
         for p in &mesh.positions {
             let _ = writeln!(out, "v {} {} {}", p.x, p.y, p.z);
         }

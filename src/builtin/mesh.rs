@@ -59,6 +59,23 @@ impl Mesh {
         self
     }
 
+    /// Puts vertices in the order in which triangles first use them, as readers of OBJ files do, and drops the rest.
+    pub(super) fn sort_vertices(&mut self) {
+        let mut place = vec![u32::MAX; self.positions.len()];
+        let mut sorted = Mesh::default();
+        for t in &mut self.triangles {
+            for i in t {
+                let old = *i as usize;
+                if place[old] == u32::MAX {
+                    place[old] = sorted.vertex(self.positions[old], self.normals[old], self.texcoords[old]);
+                }
+                *i = place[old];
+            }
+        }
+        sorted.triangles = std::mem::take(&mut self.triangles);
+        *self = sorted;
+    }
+
     /// This mesh moved by `offset`.
     pub fn moved(mut self, offset: Vec3) -> Mesh {
         self.positions.iter_mut().for_each(|p| *p += offset);

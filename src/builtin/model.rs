@@ -139,11 +139,12 @@ impl Model {
         self.materials.iter().position(|m| m.name == name)
     }
 
-    /// Rounds all coordinates to the few digits that the OBJ file shows (positions to 0.01 mm), so that the file and
-    /// the model hold the same numbers, and checks that every name resolves and every object has triangles.
+    /// Puts vertices in the order of their first use and rounds all coordinates to the few digits that the OBJ file shows (positions to 0.01 mm), so that the file and
+    /// the model hold the same numbers; checks that every name resolves and every object has triangles.
     pub(super) fn finish(mut self) -> Result<Model> {
         let snap = |v: f32, steps: f32| (v * steps).round() / steps + 0.0;
         for group in &mut self.groups {
+            group.mesh.sort_vertices();
             let mesh = &mut group.mesh;
             for p in &mut mesh.positions {
                 *p = p.to_array().map(|v| snap(v, 100_000.0)).into();

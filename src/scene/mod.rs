@@ -20,6 +20,7 @@ mod view;
 use glam::{Vec2, Vec3};
 
 pub use load::load;
+pub(crate) use view::complete as complete_view;
 
 /// Object id of "no hit": an object of its own (paper section 3, `OID`).
 pub const NO_OBJECT: u32 = u32::MAX;

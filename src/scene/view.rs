@@ -60,8 +60,12 @@ pub(super) struct ViewFile {
 
 /// Reads the view at `path`.
 pub(super) fn read(path: &Path) -> Result<ViewFile> {
-    let text = read_text(path, MAX_BYTES)?;
-    let value: Value = serde_json::from_str(&text).map_err(|e| {
+    parse(path, &read_text(path, MAX_BYTES)?)
+}
+
+/// Reads the text of a view; `path` is named in messages.
+pub(super) fn parse(path: &Path, text: &str) -> Result<ViewFile> {
+    let value: Value = serde_json::from_str(text).map_err(|e| {
         let mut message = format!("not JSON: {e}");
         if text.contains("NaN") || text.contains("Infinity") {
             message += " (numbers must be finite: JSON has no NaN or Infinity)";
@@ -100,6 +104,25 @@ pub(super) fn read(path: &Path) -> Result<ViewFile> {
         }
     }
     Ok(view)
+}
+
+/// The complete view in `text`, for scenes that are part of the library; `place` is named in messages. Also what is odd
+/// about it.
+///
+/// # Errors
+/// As for a `view.json` that is read from a file; and if camera, lights or extent are missing.
+pub(crate) fn complete(place: &str, text: &str) -> Result<(super::View, Vec<String>)> {
+    let file = parse(Path::new(place), text)?;
+    let base = super::View::default();
+    let lacks = |key: &str| Error::scene(place, format!("`{key}` is missing"));
+    let view = super::View {
+        camera: file.camera.ok_or_else(|| lacks("camera"))?,
+        lights: file.lights.ok_or_else(|| lacks("lights"))?,
+        ambient: file.ambient.unwrap_or(base.ambient),
+        background: file.background.unwrap_or(base.background),
+        extent: file.extent.ok_or_else(|| lacks("extent"))?,
+    };
+    Ok((view, file.warnings))
 }
 
 /// Where in the file a value is.

@@ -5,7 +5,7 @@ use glam::{Vec2, Vec3};
 
 use super::tableware::{cup, plate};
 use super::{Parameters, at};
-use crate::builtin::mesh::{Mesh, Random, cos_sin, smooth_path};
+use crate::builtin::mesh::{Mesh, Random, cos_sin, ring_path, smooth_path};
 use crate::builtin::model::Model;
 
 /// Left and right end of the counter.
@@ -23,7 +23,7 @@ pub fn add(model: &mut Model, p: &Parameters) {
     cake_dome(model, at(0.44, TOP, -1.66), p);
     for (k, x) in [-1.83, -1.90].into_iter().enumerate() {
         let mut stack = Mesh::default();
-        for i in 0..3 - k {
+        for i in 0..2 - k {
             stack.append(&cup(p.cup_sides).moved(at(x, TOP + 0.05 * i as f32, -1.58 - 0.13 * k as f32)));
         }
         model.add(format!("cup-stack-{}", k + 1), "porcelain", stack);
@@ -55,7 +55,7 @@ fn body(model: &mut Model, p: &Parameters) {
         let x = x0 + 0.2 + (x1 - x0 - 0.4) * i as f32 / 3.0;
         rail.append(&Mesh::tube(&[at(x, 0.2, rail_z), at(x, 0.2, z1)], 0.012, 8, false));
     }
-    model.add("counter-rail", "brass", rail);
+    model.add("counter-rail", "gilding", rail);
 }
 
 /// Two groups with portafilters, steam wands, a gauge, a drip tray, and cups that are kept warm on top.
@@ -74,7 +74,7 @@ fn espresso_machine(model: &mut Model, place: Vec3, p: &Parameters) {
     model.add("machine-panels", "red-enamel", put(red));
     let mut feet = Mesh::default();
     for (x, z) in [(-w + 0.05, -d + 0.04), (w - 0.05, -d + 0.04), (-w + 0.05, d - 0.05), (w - 0.05, d - 0.05)] {
-        feet.append(&Mesh::lathe(&[(0.0, 0.0), (0.02, 0.0), (0.026, 0.04), (0.0, 0.04)], 10).moved(at(x, 0.0, z)));
+        feet.append(&Mesh::block(at(x - 0.02, 0.0, z - 0.02), at(x + 0.02, 0.04, z + 0.02)));
     }
     let mut tray = Mesh::default();
     for i in 0..13 {
@@ -87,13 +87,13 @@ fn espresso_machine(model: &mut Model, place: Vec3, p: &Parameters) {
     for x in [-0.17, 0.13] {
         let head =
             [(0.0, 0.215), (0.034, 0.215), (0.038, 0.222), (0.038, 0.240), (0.046, 0.243), (0.046, 0.27), (0.0, 0.27)];
-        groups.append(&Mesh::lathe(&head, 18).moved(at(x, 0.0, 0.12)));
+        groups.append(&Mesh::lathe(&head, 14).moved(at(x, 0.0, 0.12)));
         for dx in [-0.012, 0.012] {
             let spout = [at(x, 0.212, 0.12), at(x + dx, 0.20, 0.122), at(x + dx * 1.3, 0.188, 0.122)];
             groups.append(&Mesh::tube(&spout, 0.006, 6, false));
         }
         let grip = [at(x, 0.228, 0.155), at(x, 0.225, 0.20), at(x, 0.212, 0.30)];
-        handles.append(&Mesh::tapered_tube(&smooth_path(&grip, 3, false), |t| 0.009 + 0.007 * t, 10, false));
+        handles.append(&Mesh::tapered_tube(&smooth_path(&grip, 3, false), |t| 0.009 + 0.007 * t, 8, false));
     }
     for side in [-1.0, 1.0] {
         let x = side * (w - 0.055);
@@ -103,8 +103,8 @@ fn espresso_machine(model: &mut Model, place: Vec3, p: &Parameters) {
             at(x + side * 0.012, 0.20, 0.225),
             at(x + side * 0.02, 0.14, 0.215),
         ];
-        groups.append(&Mesh::tube(&smooth_path(&wand, 4, false), 0.006, 7, false));
-        handles.append(&Mesh::sphere(0.020, 10, 6).moved(at(x, 0.305, 0.20)));
+        groups.append(&Mesh::tube(&smooth_path(&wand, 3, false), 0.006, 6, false));
+        handles.append(&Mesh::sphere(0.020, 8, 5).moved(at(x, 0.305, 0.20)));
     }
     model.add("machine-groups", "chrome", put(groups));
     model.add("machine-handles", "black-plastic", put(handles));
@@ -130,11 +130,13 @@ fn espresso_machine(model: &mut Model, place: Vec3, p: &Parameters) {
         bars.append(&Mesh::tube(&[rail[k], rail[k] - at(0.0, 0.05, 0.0)], 0.005, 6, false));
     }
     model.add("machine-rail", "chrome", put(bars));
+    // Upside down; only their outsides can be seen.
+    let warm = Mesh::lathe(&[(0.041, 0.0), (0.036, 0.034), (0.026, 0.054), (0.020, 0.060), (0.0, 0.060)], 8);
     let mut cups = Mesh::default();
-    for row in 0..2 {
-        for i in 0..6 {
-            let turned = cup(p.cup_sides.min(14)).turned_x(0.5).turned_y(0.13 * i as f32 + 0.3 * row as f32);
-            cups.append(&turned.moved(at(-0.275 + 0.11 * i as f32, 0.445, 0.08 - 0.15 * row as f32)));
+    for (row, count) in [(0, 6), (1, 5)] {
+        for i in 0..count {
+            let x = 0.11 * (i as f32 - 0.5 * (count - 1) as f32);
+            cups.append(&warm.clone().moved(at(x, 0.386, 0.09 - 0.12 * row as f32)));
         }
     }
     model.add("machine-cups", "porcelain", put(cups));
@@ -167,18 +169,15 @@ fn display(model: &mut Model, place: Vec3) {
     let mut cream = Mesh::default();
     let mut berries = Mesh::default();
     // Below: cupcakes. Above: a layer cake with a slice cut out, and doughnuts.
-    for i in 0..5 {
-        let x = -0.30 + 0.15 * i as f32;
+    for i in 0..4 {
+        let x = -0.27 + 0.18 * i as f32;
         for z in [-0.05, 0.09] {
-            let base = Mesh::lathe(&[(0.0, 0.0), (0.030, 0.0), (0.040, 0.045), (0.0, 0.046)], 12);
+            let base = Mesh::lathe(&[(0.030, 0.0), (0.040, 0.045)], 10);
             dough.append(&base.moved(at(x, 0.041, z)));
-            let top = Mesh::lathe(
-                &[(0.040, 0.044), (0.046, 0.052), (0.040, 0.066), (0.026, 0.080), (0.012, 0.092), (0.0, 0.097)],
-                12,
-            );
+            let top = Mesh::lathe(&[(0.040, 0.044), (0.046, 0.054), (0.034, 0.074), (0.014, 0.091), (0.0, 0.097)], 10);
             if (i + usize::from(z > 0.0)) % 2 == 0 { &mut glaze } else { &mut cream }
                 .append(&top.moved(at(x, 0.041, z)));
-            berries.append(&Mesh::sphere(0.012, 8, 5).moved(at(x, 0.144, z)));
+            berries.append(&Mesh::sphere(0.012, 6, 4).moved(at(x, 0.144, z)));
         }
     }
     let (r, y) = (0.125, 0.214);
@@ -189,17 +188,15 @@ fn display(model: &mut Model, place: Vec3) {
     glaze.append(&layer(0.092, 0.108, 0.003));
     for i in 0..7 {
         let (c, s) = cos_sin(0.83 + 0.11 * i as f32);
-        berries.append(&Mesh::sphere(0.013, 8, 5).moved(at(-0.22 + 0.1 * c, y + 0.118, -0.01 - 0.1 * s)));
+        berries.append(&Mesh::sphere(0.013, 6, 4).moved(at(-0.22 + 0.1 * c, y + 0.118, -0.01 - 0.1 * s)));
     }
-    for i in 0..3 {
-        for z in [-0.06, 0.075] {
-            let ring: Vec<Vec3> = crate::builtin::mesh::ring_path(0.034, 0.034, 0.0, 12);
-            let place = at(0.03 + 0.125 * i as f32, y + 0.02, z);
-            let whole = Mesh::tube(&ring, 0.0195, 8, true).moved(place);
-            let icing = Mesh::tube(&ring, 0.0175, 8, true).moved(place + at(0.0, 0.005, 0.0));
-            dough.append(&whole);
-            if i % 2 == 0 { &mut glaze } else { &mut berries }.append(&icing);
-        }
+    for i in 0..4 {
+        let (x, z) = (0.02 + 0.085 * i as f32, if i % 2 == 0 { 0.06 } else { -0.06 });
+        let ring = ring_path(0.036, 0.036, 0.0, 10);
+        let place = at(x, y + 0.021, z);
+        dough.append(&Mesh::tube(&ring, 0.0205, 6, true).moved(place));
+        let icing = Mesh::tube(&ring, 0.0185, 6, true).moved(place + at(0.0, 0.006, 0.0));
+        if i % 2 == 0 { &mut glaze } else { &mut berries }.append(&icing);
     }
     model.add("display-dough", "crust", put(dough));
     model.add("display-chocolate", "chocolate", put(glaze));
@@ -250,15 +247,15 @@ fn cake_dome(model: &mut Model, place: Vec3, p: &Parameters) {
         (0.155, 0.114),
         (0.0, 0.114),
     ];
-    model.add("cake-stand", "porcelain", put(Mesh::lathe(&stand, 28)));
+    model.add("cake-stand", "porcelain", put(Mesh::lathe(&stand, 20)));
     let sponge = [(0.0, 0.115), (0.105, 0.115), (0.108, 0.12), (0.108, 0.175), (0.0, 0.176)];
-    model.add("cake", "cream", put(Mesh::lathe(&sponge, 28)));
+    model.add("cake", "cream", put(Mesh::lathe(&sponge, 20)));
     let icing = [(0.1095, 0.158), (0.112, 0.176), (0.105, 0.186), (0.0, 0.188)];
-    let mut coat = Mesh::lathe(&icing, 28);
-    for i in 0..14 {
-        let (c, s) = cos_sin(i as f32 / 14.0);
+    let mut coat = Mesh::lathe(&icing, 20);
+    for i in 0..10 {
+        let (c, s) = cos_sin(i as f32 / 10.0);
         let drop = 0.012 + 0.018 * ((i * 5) % 7) as f32 / 6.0;
-        coat.append(&Mesh::sphere(0.012, 8, 6).stretched(at(0.8, 1.0 + drop * 40.0, 0.8)).moved(at(
+        coat.append(&Mesh::sphere(0.014, 6, 4).stretched(at(0.8, 1.0 + drop * 35.0, 0.8)).moved(at(
             0.107 * c,
             0.16,
             -0.107 * s,
@@ -266,15 +263,15 @@ fn cake_dome(model: &mut Model, place: Vec3, p: &Parameters) {
     }
     model.add("cake-icing", "chocolate", put(coat));
     let mut cherries = Mesh::default();
-    for i in 0..8 {
-        let (c, s) = cos_sin(i as f32 / 8.0);
-        cherries.append(&Mesh::sphere(0.0135, 10, 6).moved(at(0.08 * c, 0.199, -0.08 * s)));
+    for i in 0..7 {
+        let (c, s) = cos_sin(i as f32 / 7.0);
+        cherries.append(&Mesh::sphere(0.0145, 7, 4).moved(at(0.08 * c, 0.199, -0.08 * s)));
     }
     model.add("cake-cherries", "cherry", put(cherries));
     // Outside upwards, inside downwards: one closed shell, 4 mm thick.
     let (r, t, low, wall) = (0.142, 0.004, 0.1155, 0.20);
     let mut profile = vec![(r - t, low), (r, low), (r, wall)];
-    let arc = 8;
+    let arc = 7;
     for (radius, height, order) in [(r, 0.10, 1), (r - t, 0.10 - t, -1)] {
         for k in 0..=arc {
             let k = if order > 0 { k } else { arc - k };
@@ -300,9 +297,9 @@ fn shelves(model: &mut Model, p: &Parameters) {
     let mut brackets = Mesh::default();
     for y in heights {
         boards.append(&Mesh::rounded_block(at(x0, y - 0.03, back), at(x1, y, back + 0.24), 0.005));
-        for x in [x0 + 0.2, 0.5 * (x0 + x1), x1 - 0.2] {
+        for x in [x0 + 0.3, x1 - 0.3] {
             let bend = [at(x, y - 0.16, back + 0.012), at(x, y - 0.06, back + 0.05), at(x, y - 0.032, back + 0.18)];
-            brackets.append(&Mesh::tube(&smooth_path(&bend, 3, false), 0.009, 6, false));
+            brackets.append(&Mesh::tube(&smooth_path(&bend, 2, false), 0.009, 5, false));
             brackets.append(&Mesh::block(at(x - 0.012, y - 0.2, back), at(x + 0.012, y - 0.03, back + 0.012)));
         }
     }
@@ -323,9 +320,7 @@ fn shelves(model: &mut Model, p: &Parameters) {
         let kind = glass[(random.range(0.0, 4.0) as usize).min(3)];
         let (shoulder, neck) = (tall * random.range(0.52, 0.62), r * 0.34);
         let profile = [
-            (0.0, 0.0),
-            (r * 0.94, 0.0),
-            (r, 0.01),
+            (r, 0.0),
             (r, shoulder),
             (r * 0.85, shoulder + 0.03),
             (neck, shoulder + 0.07),
@@ -350,19 +345,19 @@ fn shelves(model: &mut Model, p: &Parameters) {
         let book = Mesh::block(at(0.0, 0.0, 0.0), at(thick, tall, deep)).moved(at(x, heights[0], back + 0.04));
         model.add(format!("book-{}", i + 1), colours[(i as usize * 3 + i as usize / 5) % 5], book);
     }
-    let jar = [(0.0, 0.0), (0.058, 0.0), (0.062, 0.012), (0.062, 0.12), (0.050, 0.145), (0.0, 0.146)];
+    let jar = [(0.058, 0.0), (0.062, 0.012), (0.062, 0.12), (0.050, 0.145), (0.0, 0.146)];
     let lid = [(0.052, 0.1465), (0.054, 0.165), (0.02, 0.172), (0.018, 0.185), (0.0, 0.190)];
     for (i, (x, kind)) in [(-2.40, "cream"), (-2.24, "chocolate"), (-2.08, "terracotta")].into_iter().enumerate() {
         let place = at(x, heights[0], back + 0.13);
-        model.add(format!("jar-{}", i + 1), kind, Mesh::lathe(&jar, 16).moved(place));
-        model.add(format!("jar-{}-lid", i + 1), "oak", Mesh::lathe(&lid, 16).moved(place));
+        model.add(format!("jar-{}", i + 1), kind, Mesh::lathe(&jar, 12).moved(place));
+        model.add(format!("jar-{}-lid", i + 1), "oak", Mesh::lathe(&lid, 12).moved(place));
     }
     let mut plates = Mesh::default();
-    for i in 0..5 {
+    for i in 0..4 {
         plates.append(&plate(0.095, p.cup_sides).moved(at(-1.84, heights[0] + 0.012 * i as f32, back + 0.13)));
     }
-    for i in 0..4 {
-        let place = at(-1.64 + 0.105 * i as f32, heights[0], back + 0.12);
+    for i in 0..3 {
+        let place = at(-1.64 + 0.125 * i as f32, heights[0], back + 0.12);
         plates.append(&cup(p.cup_sides).turned_y(0.07 * i as f32 - 0.1).moved(place));
     }
     model.add("shelf-crockery", "porcelain", plates);

@@ -11,7 +11,7 @@ use crate::builtin::model::Model;
 pub fn add(model: &mut Model, p: &Parameters) {
     let back = p.room.back;
     framed(model, "menu", ("chalkboard", "oak"), at(0.12, 1.80, back), Vec2::new(0.54, 0.52), 0.045);
-    framed(model, "mirror", ("mirror", "gilding"), at(1.62, 1.66, back), Vec2::new(0.44, 0.56), 0.07);
+    framed(model, "mirror", ("mirror", "gilding"), at(1.33, 1.66, back), Vec2::new(0.44, 0.58), 0.07);
     // Seen in the mirror.
     let name = "picture";
     let (w, h, z) = (0.5, 0.375, p.room.front);
@@ -25,7 +25,7 @@ pub fn add(model: &mut Model, p: &Parameters) {
     let border = Mesh::block(at(-0.5 - w, 1.65 - h, z - 0.015), at(-0.4 + w, 1.75 + h, z - 0.001));
     model.add("picture-frame", "walnut", border);
     side_picture(model, p);
-    clock(model, at(1.02, 2.42, back));
+    clock(model, at(1.33, 2.55, back));
     plant(model, at(-2.75, 0.0, -2.05), p);
 }
 
@@ -70,14 +70,14 @@ fn clock(model: &mut Model, middle: Vec3) {
         (r - 0.002, 0.03),
         (r - 0.002, 0.001),
     ];
-    model.add("clock-rim", "iron", Mesh::lathe(&rim, 28).turned_x(0.25).moved(middle));
+    model.add("clock-rim", "iron", Mesh::lathe(&rim, 24).turned_x(0.25).moved(middle));
 }
 
 /// A tall plant with slit leaves in a pot.
 fn plant(model: &mut Model, place: Vec3, p: &Parameters) {
     let pot =
         [(0.0, 0.0), (0.13, 0.0), (0.18, 0.30), (0.20, 0.30), (0.20, 0.35), (0.175, 0.35), (0.165, 0.31), (0.0, 0.30)];
-    model.add("plant-pot", "terracotta", Mesh::lathe(&pot, 24).moved(place));
+    model.add("plant-pot", "terracotta", Mesh::lathe(&pot, 18).moved(place));
     let soil = Mesh::lathe(&[(0.166, 0.318), (0.0, 0.325)], 16);
     model.add("plant-soil", "soil", soil.moved(place));
     let mut random = Random::new(p.seed.wrapping_add(77));
@@ -92,7 +92,7 @@ fn plant(model: &mut Model, place: Vec3, p: &Parameters) {
         let tip = at(c * reach, high, -s * reach);
         let stem =
             [at(c * 0.03, 0.31, -s * 0.03), at(c * reach * 0.35, 0.31 + (high - 0.31) * 0.7, -s * reach * 0.35), tip];
-        stems.append(&Mesh::tube(&smooth_path(&stem, 2, false), 0.0045, 4, false));
+        stems.append(&Mesh::tube(&smooth_path(&stem, 2, false), 0.0045, 3, false));
         let (long, wide) = (random.range(0.24, 0.34), random.range(0.19, 0.25));
         let (rise, droop) = (random.range(0.02, 0.30) * (0.3 + t), random.range(0.25, 0.6));
         let roll = random.range(-0.35, 0.35);

@@ -19,8 +19,8 @@ pub fn add(model: &mut Model, p: &Parameters) {
         model.add(format!("table-{n}-top"), "marble", table_top(table.radius, p.table_sides).moved(place));
         let r = table.radius + 0.003;
         let (lo, hi) = (TABLE_HEIGHT - 0.028, TABLE_HEIGHT - 0.008);
-        let band = Mesh::lathe(&[(r - 0.002, lo), (r, lo), (r, hi), (r - 0.002, hi), (r - 0.002, lo)], p.table_sides);
-        model.add(format!("table-{n}-band"), "brass", band.moved(place));
+        let band = Mesh::lathe(&[(r, lo), (r, hi), (r - 0.004, hi)], p.table_sides);
+        model.add(format!("table-{n}-band"), "gilding", band.moved(place));
         let foot = table_foot(table.radius).turned_y(0.07 + 0.11 * i as f32);
         model.add(format!("table-{n}-foot"), "iron", foot.moved(place));
     }
@@ -61,13 +61,13 @@ fn table_foot(radius: f32) -> Mesh {
         (0.14, under - 0.008),
         (0.14, under),
     ];
-    let mut foot = Mesh::lathe(&profile, 14);
+    let mut foot = Mesh::lathe(&profile, 10);
     let reach = radius * 0.82;
     let bend = [at(0.0, 0.17, 0.0), at(reach * 0.35, 0.155, 0.0), at(reach * 0.75, 0.06, 0.0), at(reach, 0.018, 0.0)];
-    let path = smooth_path(&bend, 3, false);
+    let path = smooth_path(&bend, 2, false);
     for k in 0..3 {
-        let leg = Mesh::tapered_tube(&path, |t| 0.020 - 0.006 * t, 8, false);
-        let pad = Mesh::lathe(&[(0.0, 0.001), (0.026, 0.001), (0.026, 0.012), (0.014, 0.02), (0.0, 0.021)], 10);
+        let leg = Mesh::tapered_tube(&path, |t| 0.020 - 0.006 * t, 6, false);
+        let pad = Mesh::lathe(&[(0.026, 0.0), (0.026, 0.012), (0.0, 0.021)], 7);
         foot.append(&leg.and(pad.moved(at(reach, 0.0, 0.0))).turned_y(k as f32 / 3.0));
     }
     foot
@@ -106,15 +106,8 @@ fn chair_frame(c: &Chair) -> Mesh {
         let path = smooth_path(&leg, c.steps.div_ceil(2), false);
         frame.append(&Mesh::tapered_tube(&path, |t| r * (1.05 - 0.3 * t), c.sides, false));
     }
-    frame.append(&Mesh::tube(&ring_path(0.77 * w, 0.80 * w, 0.46 * s, c.seat_sides), r * 0.65, c.sides.min(6), true));
-    let rim = [
-        (w * 0.80, s - 0.006),
-        (w * 0.84, s - 0.030),
-        (w * 0.98, s - 0.030),
-        (w, s - 0.015),
-        (w * 0.96, s + 0.004),
-        (w * 0.80, s - 0.006),
-    ];
+    frame.append(&Mesh::tube(&ring_path(0.77 * w, 0.80 * w, 0.46 * s, c.seat_sides), r * 0.65, c.sides.min(5), true));
+    let rim = [(w * 0.98, s - 0.030), (w, s - 0.015), (w * 0.96, s + 0.004), (w * 0.80, s - 0.006)];
     frame.append(&Mesh::lathe(&rim, c.seat_sides));
     frame
 }
@@ -128,7 +121,7 @@ fn mirrored(half: &[Vec3], top: Vec3) -> Vec<Vec3> {
 /// The woven seat.
 fn chair_seat(c: &Chair) -> Mesh {
     let (s, w) = (c.seat_height, c.seat_radius);
-    let profile = [(0.0, s - 0.020), (w * 0.82, s - 0.022), (w * 0.83, s - 0.006), (0.0, s - 0.011)];
+    let profile = [(w * 0.82, s - 0.026), (w * 0.83, s - 0.006), (0.0, s - 0.011)];
     Mesh::lathe(&profile, c.seat_sides).with_plan_texture(12.0)
 }
 
@@ -150,15 +143,15 @@ fn add_lamp(model: &mut Model, n: usize, lamp: &Lamp, ceiling: f32, sides: u32) 
             (r * 0.13, h + 0.06),
             (0.008, h + 0.085),
         ],
-        sides.min(16),
+        sides.min(10),
     );
     model.add(format!("lamp-{n}-cap"), "brass", cap.moved(place));
     let cord = Mesh::tube(&[place + at(0.0, h + 0.07, 0.0), at(place.x, ceiling, place.z)], 0.006, 6, false);
-    let rose = Mesh::lathe(&[(0.012, -0.03), (0.05, -0.012), (0.055, 0.0)], 16).moved(at(place.x, ceiling, place.z));
+    let rose = Mesh::lathe(&[(0.012, -0.03), (0.05, -0.012), (0.055, 0.0)], 10).moved(at(place.x, ceiling, place.z));
     model.add(format!("lamp-{n}-cord"), "iron", cord.and(rose));
     let (_, waist) = cos_sin(0.1);
     let b = 0.034;
     let bulb =
         [(0.0, -b), (b * waist, -b * 0.80), (b, 0.0), (b * 0.8, b * 0.75), (b * 0.42, b * 1.6), (b * 0.40, b * 2.6)];
-    model.add(format!("lamp-{n}-bulb"), "bulb", Mesh::lathe(&bulb, 14).moved(place + at(0.0, 0.055, 0.0)));
+    model.add(format!("lamp-{n}-bulb"), "bulb", Mesh::lathe(&bulb, 10).moved(place + at(0.0, 0.055, 0.0)));
 }

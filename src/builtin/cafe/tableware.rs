@@ -37,18 +37,8 @@ pub fn add(model: &mut Model, p: &Parameters) {
 
 /// A cup with a handle at +x; its foot stands on the origin. 62 mm high.
 pub fn cup(sides: u32) -> Mesh {
-    let profile = [
-        (0.0, 0.0),
-        (0.020, 0.0),
-        (0.026, 0.006),
-        (0.036, 0.026),
-        (0.041, 0.060),
-        (0.040, 0.062),
-        (0.037, 0.058),
-        (0.032, 0.026),
-        (0.020, 0.008),
-        (0.0, 0.007),
-    ];
+    let profile =
+        [(0.0, 0.0), (0.022, 0.0), (0.036, 0.026), (0.041, 0.060), (0.038, 0.062), (0.032, 0.026), (0.0, 0.010)];
     let handle = [
         at(0.035, 0.05, 0.0),
         at(0.055, 0.052, 0.0),
@@ -56,21 +46,13 @@ pub fn cup(sides: u32) -> Mesh {
         at(0.048, 0.022, 0.0),
         at(0.032, 0.018, 0.0),
     ];
-    Mesh::lathe(&profile, sides).and(Mesh::tube(&smooth_path(&handle, 2, false), 0.0045, 6, false))
+    Mesh::lathe(&profile, sides).and(Mesh::tube(&smooth_path(&handle, 2, false), 0.0045, 5, false))
 }
 
 /// A plate on the origin.
 pub fn plate(radius: f32, sides: u32) -> Mesh {
     let r = radius;
-    let profile = [
-        (0.0, 0.001),
-        (r * 0.6, 0.0),
-        (r * 0.66, 0.006),
-        (r, 0.015),
-        (r * 0.99, 0.018),
-        (r * 0.66, 0.011),
-        (0.0, 0.010),
-    ];
+    let profile = [(r * 0.6, 0.0), (r, 0.015), (r * 0.99, 0.018), (r * 0.66, 0.010), (0.0, 0.009)];
     Mesh::lathe(&profile, sides)
 }
 
@@ -78,13 +60,13 @@ pub fn plate(radius: f32, sides: u32) -> Mesh {
 fn served_cup(model: &mut Model, name: &str, place: Vec3, turns: f32, p: &Parameters) {
     let put = |mesh: Mesh| mesh.turned_y(turns).moved(place);
     let above = at(0.0, 0.0102, 0.0);
-    let sides = p.cup_sides * 5 / 4;
+    let sides = p.cup_sides * 4 / 3;
     model.add(name, "porcelain", put(cup(sides).moved(above).and(plate(0.072, sides))));
-    let surface = Mesh::lathe(&[(0.0372, 0.050), (0.026, 0.0525), (0.0, 0.053)], sides).moved(above);
+    let surface = Mesh::lathe(&[(0.0362, 0.051), (0.0, 0.052)], sides).moved(above);
     model.add(format!("{name}-coffee"), "coffee", put(surface));
     let handle = [at(-0.03, 0.018, 0.050), at(0.02, 0.020, 0.052), at(0.075, 0.021, 0.046)];
-    let spoon = Mesh::tapered_tube(&smooth_path(&handle, 3, false), |t| 0.0018 + 0.0012 * t, 6, false);
-    let bowl = Mesh::sphere(0.012, 10, 6).stretched(at(1.5, 0.35, 1.0)).moved(at(-0.043, 0.0185, 0.049));
+    let spoon = Mesh::tapered_tube(&smooth_path(&handle, 2, false), |t| 0.0018 + 0.0012 * t, 5, false);
+    let bowl = Mesh::sphere(0.012, 8, 4).stretched(at(1.5, 0.35, 1.0)).moved(at(-0.043, 0.0185, 0.049));
     model.add(format!("{name}-spoon"), "chrome", put(spoon.and(bowl)));
 }
 
@@ -107,11 +89,11 @@ fn carafe(model: &mut Model, place: Vec3, sides: u32) {
     profile.extend(outside.iter().rev().map(|&q| inside(q)));
     profile.push((0.0, 0.006));
     model.add("carafe", "glass", Mesh::lathe(&profile, sides).moved(place));
-    // The drink stays half a millimetre off the glass: no two surfaces coincide.
-    let gap = |(r, y): (f32, f32)| (r - 0.0038, y.max(0.0068));
-    let mut drink = vec![(0.0, 0.0066)];
-    drink.extend(outside[1..5].iter().map(|&q| gap(q)));
-    drink.push((0.0, 0.1155));
+    // The drink ends in the middle of the glass: no two surfaces coincide, and no ray is lost between them.
+    let gap = |(r, y): (f32, f32)| (r - 0.0015, y);
+    let mut drink = vec![(0.0, 0.003), (0.050, 0.003)];
+    drink.extend(outside[2..5].iter().map(|&q| gap(q)));
+    drink.push((0.0, 0.115));
     model.add("carafe-drink", "tea", Mesh::lathe(&drink, sides).moved(place));
 }
 
@@ -132,14 +114,8 @@ fn juice(model: &mut Model, place: Vec3, sides: u32) {
         (0.0, 0.010),
     ];
     model.add("tumbler", "glass", Mesh::lathe(&profile, sides).moved(place));
-    let gap = t + 0.0008;
-    let drink = [
-        (0.0, 0.0106),
-        (wall(0.0112) - gap - 0.0015, 0.0106),
-        (wall(0.013) - gap, 0.013),
-        (wall(0.092) - gap, 0.092),
-        (0.0, 0.092),
-    ];
+    let gap = 0.5 * t;
+    let drink = [(0.0, 0.005), (wall(0.005) - gap, 0.005), (wall(0.092) - gap, 0.092), (0.0, 0.092)];
     model.add("juice", "juice", Mesh::lathe(&drink, sides).moved(place));
     let straw = Mesh::tube(&[at(0.012, 0.093, 0.004), at(-0.030, 0.185, -0.010)], 0.0032, 8, false);
     model.add("straw", "berry", straw.moved(place));
@@ -147,20 +123,20 @@ fn juice(model: &mut Model, place: Vec3, sides: u32) {
 
 /// A croissant: a bent, ridged spindle.
 fn croissant() -> Mesh {
-    let rows = 28;
+    let rows = 21;
     let path: Vec<Vec3> = (0..=rows)
         .map(|i| {
-            let (c, s) = cos_sin(0.04 + 0.42 * i as f32 / rows as f32);
-            at(c * 0.058, 0.0, 0.02 - s * 0.050)
+            let (c, s) = cos_sin(-0.06 + 0.62 * i as f32 / rows as f32);
+            at(c * 0.058, 0.0, 0.012 - s * 0.046)
         })
         .collect();
     // Seven ridges, thickest in the middle.
     let radius = |t: f32| {
         let spindle = 4.0 * t * (1.0 - t);
         let f = t * 7.0 - (t * 7.0).floor();
-        0.004 + 0.023 * spindle * (0.88 + 0.5 * f * (1.0 - f))
+        0.005 + 0.024 * spindle * (0.72 + 1.1 * f * (1.0 - f))
     };
-    Mesh::tapered_tube(&path, radius, 12, false).stretched(at(1.0, 0.85, 1.0)).moved(at(0.0, 0.018, 0.0))
+    Mesh::tapered_tube(&path, radius, 10, false).stretched(at(1.0, 0.85, 1.0)).moved(at(0.0, 0.018, 0.0))
 }
 
 /// A small vase with three roses.
@@ -182,9 +158,9 @@ fn vase(model: &mut Model, place: Vec3, p: &Parameters) {
     for (i, (x, y, z)) in [(-0.05, 0.24, 0.01), (0.045, 0.255, -0.02), (0.0, 0.285, 0.03)].into_iter().enumerate() {
         let stem = [at(0.0, 0.10, 0.0), at(x * 0.35, 0.17, z * 0.35), at(x, y, z)];
         stems.append(&Mesh::tube(&smooth_path(&stem, 3, false), 0.0022, 5, false));
-        for k in 0..5 {
-            let (c, s) = cos_sin(0.2 * k as f32 + 0.07 * i as f32);
-            let petal = Mesh::sphere(0.017, 8, 5).stretched(at(1.0, 1.15, 0.8)).moved(at(0.010 * c, 0.006, 0.010 * s));
+        for k in 0..4 {
+            let (c, s) = cos_sin(0.25 * k as f32 + 0.07 * i as f32);
+            let petal = Mesh::sphere(0.018, 7, 4).stretched(at(1.0, 1.15, 0.8)).moved(at(0.010 * c, 0.006, 0.010 * s));
             petals.append(&petal.moved(at(x, y, z)));
         }
     }
