@@ -6,7 +6,9 @@
 //! scene files -> [`scene::Scene`] -> [`kdtree::KdTree`] -> device buffers -> stages -> frame -> PNG.
 
 pub mod backend;
+pub mod builtin;
 pub mod camera;
+pub mod compare;
 pub mod error;
 pub mod fallback;
 pub mod frame;
@@ -22,8 +24,10 @@ pub mod picture;
 pub mod pipeline;
 pub mod profiles;
 pub mod renderer;
+pub mod report;
 pub mod scene;
 pub mod scene_buffers;
+pub mod selftest;
 pub mod stage;
 pub mod twin;
 
