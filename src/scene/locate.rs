@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use super::lines::{LogicalLines, keyword, words};
+use super::lines::{LogicalLines, keyword, without_comment, words};
 use super::obj::MAX_COORDINATE;
 use crate::Error;
 
@@ -15,6 +15,7 @@ pub(super) fn bad_number(path: &Path) -> Option<Error> {
     loop {
         let (number, line) = lines.next_line().ok()??;
         let (key, rest) = keyword(line);
+        let rest = without_comment(rest);
         let least = match key {
             b"v" | b"vn" => 3,
             b"vt" => 1,

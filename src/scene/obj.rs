@@ -16,7 +16,7 @@ use std::collections::HashMap;
 use std::io::{self, BufRead, Read};
 use std::path::Path;
 
-use super::lines::{LogicalLines, keyword, name_text, words};
+use super::lines::{LogicalLines, keyword, name_text, without_comment, words};
 use super::locate;
 use crate::{Error, Result};
 
@@ -168,6 +168,7 @@ impl<'a> Feed<'a> {
     fn step(&mut self) -> Result<Step> {
         let Some((number, line)) = self.lines.next_line()? else { return Ok(Step::End) };
         let (key, rest) = keyword(line);
+        let rest = if matches!(key, b"v" | b"vt" | b"vn" | b"f") { without_comment(rest) } else { rest };
         match key {
             b"v" => {
                 self.defined.positions += 1;
@@ -357,9 +358,6 @@ fn push_face(out: &mut Vec<u8>, rest: &[u8], defined: &Defined) -> std::result::
     out.push(b'f');
     let mut corners = 0;
     for word in words(rest) {
-        if word[0] == b'#' {
-            break;
-        }
         out.push(b' ');
         push_corner(out, word, defined)
             .map_err(|why| format!("corner `{}`: {why}", String::from_utf8_lossy(&word[..word.len().min(60)])))?;

@@ -108,7 +108,11 @@ impl Textures {
             reader.limits(limits);
             Ok(reader)
         };
-        let broken = |e: image::ImageError| fail(format!("picture is damaged or cut short ({e}); export it again"));
+        let broken = |e: image::ImageError| {
+            // Some decoders' messages have line ends.
+            let why = e.to_string().split_whitespace().collect::<Vec<_>>().join(" ");
+            fail(format!("picture is damaged or cut short ({why}); export it again"))
+        };
         // The decoder refuses absurd sizes without naming them.
         let size = match (format, png_size(head)) {
             (ImageFormat::Png, Some(size)) => size,
