@@ -52,7 +52,7 @@ fn check(rest: &[u8], least: usize, is_position: bool) -> Result<(), String> {
     if weight == 0.0 {
         return Err("the weight (fourth number) is 0; leave it out".into());
     }
-    match values.iter().take(3).find(|v| !((**v / weight).abs() <= MAX_COORDINATE)) {
+    match values.iter().take(3).find(|v| (**v / weight).abs() > MAX_COORDINATE) {
         Some(v) => Err(format!("{} is out of range (at most {MAX_COORDINATE:e}); scale the model down", v / weight)),
         None => Ok(()),
     }

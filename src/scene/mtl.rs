@@ -259,7 +259,7 @@ mod tests {
                     map_Kd -s 2 3 1 -clamp off my wood.jpg\nmap_d a.png\nnewmtl b\nd 0.5\n";
         let (materials, warnings) = read_text(text);
         let materials = materials.unwrap();
-        assert_eq!(warnings, [String::new(); 0]);
+        assert!(warnings.is_empty(), "{warnings:?}");
         let m = &materials[0];
         assert_eq!(
             (m.name.as_str(), m.diffuse, m.specular),

@@ -135,6 +135,8 @@ fn sums_by_direction(around: &[Around]) -> Vec<Vec3> {
 
 #[cfg(test)]
 mod tests {
+    use std::f32::consts::{PI, TAU};
+
     use super::*;
     use crate::math::unpack_normal;
 
@@ -171,9 +173,8 @@ mod tests {
         let front = [[0, 1, 5], [0, 5, 4]];
         let triangles = [top[0], top[1], front[0], front[1]];
         let normals = normals_of(&positions, &triangles);
-        for corner in 0..3 {
-            assert!((normals[0][corner] - Vec3::Z).length() < 1e-4 && (normals[1][corner] - Vec3::Z).length() < 1e-4);
-            assert!((normals[2][corner] - Vec3::NEG_Y).length() < 1e-4);
+        for (corners, expected) in normals.iter().zip([Vec3::Z, Vec3::Z, Vec3::NEG_Y, Vec3::NEG_Y]) {
+            assert!(corners.iter().all(|n| (*n - expected).length() < 1e-4), "{corners:?}");
         }
     }
 
@@ -184,7 +185,7 @@ mod tests {
         let mut positions = Vec::new();
         for r in 0..=rings {
             for s in 0..sectors {
-                let (theta, phi) = (r as f32 / rings as f32 * 3.141_592_7, s as f32 / sectors as f32 * 6.283_185_5);
+                let (theta, phi) = (r as f32 / rings as f32 * PI, s as f32 / sectors as f32 * TAU);
                 positions.push(Vec3::new(theta.sin() * phi.cos(), theta.cos(), -theta.sin() * phi.sin()));
             }
         }
@@ -207,7 +208,7 @@ mod tests {
         let sides = 60_000u32;
         let mut positions = vec![Vec3::new(0.0, 0.1, 0.0)];
         positions.extend((0..sides).map(|i| {
-            let (s, c) = (i as f32 / sides as f32 * 6.283_185_5).sin_cos();
+            let (s, c) = (i as f32 / sides as f32 * TAU).sin_cos();
             Vec3::new(c, 0.0, -s)
         }));
         let triangles: Vec<[u32; 3]> = (0..sides).map(|i| [0, 1 + i, 1 + (i + 1) % sides]).collect();
