@@ -363,6 +363,10 @@ fn damaged_and_absurd_pictures_are_refused() {
     refused(load_texture(mtl, "a.png", &sized(1 << 31, 1)), &["a.png", "2147483648x1", "16384", "scale"]);
     refused(load_texture(mtl, "a.png", &sized(16384, 16384)), &["a.png", "16384x16384", "1024 MiB", "256 MiB"]);
     refused(load_texture(mtl, "a.png", &sized(0, 4)), &["a.png", "0x4"]);
+    let mut wide = Vec::new();
+    let picture = image::GrayImage::new(16385, 1);
+    picture.write_to(&mut std::io::Cursor::new(&mut wide), image::ImageFormat::Jpeg).unwrap();
+    refused(load_texture(mtl, "a.png", &wide), &["a.png", "16385x1", "16384"]);
     // A header that promises more than the file has, within the limits.
     refused(load_texture(mtl, "a.png", &sized(300, 300)), &["a.png", "damaged or cut short"]);
 }

@@ -123,6 +123,8 @@ struct Feed<'a> {
     faces_in_group: u64,
     /// By group number: it has faces.
     group_has_faces: Vec<bool>,
+    /// By group number: it is in `reopened_groups`.
+    group_reopened: Vec<bool>,
     reopened_groups: Vec<String>,
     materials: Names,
     libraries: Vec<(String, usize)>,
@@ -152,6 +154,7 @@ impl<'a> Feed<'a> {
             group: 0,
             faces_in_group: 0,
             group_has_faces: Vec::new(),
+            group_reopened: Vec::new(),
             reopened_groups: Vec::new(),
             materials: Names::default(),
             libraries: Vec::new(),
@@ -246,9 +249,10 @@ impl<'a> Feed<'a> {
         let (id, new) = self.groups.number(name, line);
         if new {
             self.group_has_faces.push(false);
+            self.group_reopened.push(false);
         } else if id != self.group && self.group_has_faces[id] {
             let name = &self.groups.names[id].0;
-            if !name.is_empty() && !self.reopened_groups.contains(name) {
+            if !name.is_empty() && !std::mem::replace(&mut self.group_reopened[id], true) {
                 self.reopened_groups.push(name.clone());
             }
         }

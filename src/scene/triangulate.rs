@@ -8,8 +8,8 @@
 
 use glam::{DVec2, DVec3, Vec3};
 
-/// Most corner tests spent on one polygon (about a second); beyond that it becomes a fan.
-const MAX_TESTS: u64 = 400_000_000;
+/// Most corner tests spent on all polygons of a scene (some seconds); what is left then becomes fans.
+pub(super) const MAX_TESTS: u64 = 1_000_000_000;
 
 /// How a polygon was split.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -23,7 +23,8 @@ pub(super) enum Split {
 }
 
 /// Splits the polygon with these corners; appends triangles of corner numbers to `out`, wound as the polygon is.
-pub(super) fn split(corners: &[Vec3], out: &mut Vec<[u32; 3]>) -> Split {
+/// `tests_left`: how many corner tests may still be spent, at first [`MAX_TESTS`].
+pub(super) fn split(corners: &[Vec3], tests_left: &mut u64, out: &mut Vec<[u32; 3]>) -> Split {
     let n = corners.len();
     if n < 3 {
         return Split::Degenerate;
@@ -57,7 +58,7 @@ pub(super) fn split(corners: &[Vec3], out: &mut Vec<[u32; 3]>) -> Split {
         return Split::Exact;
     }
     let first = out.len();
-    let outcome = clip_ears(&ring, &flat, out);
+    let outcome = clip_ears(&ring, &flat, tests_left, out);
     // Triangles that cover a polygon without overlap have its area; those of one that crosses itself have more.
     let flat_area = |corners: &[u32]| {
         let at = |i: usize| flat[corners[i % corners.len()] as usize];
@@ -105,7 +106,7 @@ struct Clipper<'a> {
     clipped: Vec<bool>,
     /// Places that may be reflex (or straight); those that are not any more are skipped.
     reflex: Vec<u32>,
-    tests: u64,
+    tests_left: &'a mut u64,
 }
 
 impl Clipper<'_> {
@@ -143,7 +144,7 @@ impl Clipper<'_> {
             let (u, v, w) = (area2(a, b, q), area2(b, c, q), area2(c, a, q));
             if lenient { u > 0.0 && v > 0.0 && w > 0.0 } else { u >= 0.0 && v >= 0.0 && w >= 0.0 }
         });
-        self.tests += tests;
+        *self.tests_left = self.tests_left.saturating_sub(tests);
         !blocked
     }
 
@@ -157,7 +158,7 @@ impl Clipper<'_> {
     }
 }
 
-fn clip_ears(ring: &[u32], flat: &[DVec2], out: &mut Vec<[u32; 3]>) -> Split {
+fn clip_ears(ring: &[u32], flat: &[DVec2], tests_left: &mut u64, out: &mut Vec<[u32; 3]>) -> Split {
     let count = ring.len() as u32;
     let mut clipper = Clipper {
         flat,
@@ -166,7 +167,7 @@ fn clip_ears(ring: &[u32], flat: &[DVec2], out: &mut Vec<[u32; 3]>) -> Split {
         previous: (0..count).map(|i| (i + count - 1) % count).collect(),
         clipped: vec![false; ring.len()],
         reflex: Vec::new(),
-        tests: 0,
+        tests_left,
     };
     clipper.reflex = (0..count).filter(|&i| clipper.turn(i) <= 0.0).collect();
     let mut left = count;
@@ -184,7 +185,7 @@ fn clip_ears(ring: &[u32], flat: &[DVec2], out: &mut Vec<[u32; 3]>) -> Split {
         candidates.reverse();
         let before = left;
         while let Some(place) = candidates.pop() {
-            if clipper.tests > MAX_TESTS {
+            if *clipper.tests_left == 0 {
                 outcome = Split::Approximate;
                 break 'rounds;
             }
@@ -239,6 +240,10 @@ mod tests {
         flat.iter().map(|&(x, y)| Vec3::new(x, y, 0.0)).collect()
     }
 
+    fn split_all(corners: &[Vec3], out: &mut Vec<[u32; 3]>) -> Split {
+        split(corners, &mut { MAX_TESTS }, out)
+    }
+
     /// Signed area above the xy plane.
     fn signed_area(corners: &[Vec3], triangles: &[[u32; 3]]) -> f64 {
         let area = |t: &[u32; 3]| {
@@ -251,7 +256,7 @@ mod tests {
     /// Splits, and checks that no triangle is turned over and that all have `area` together.
     fn split_well(corners: &[Vec3], area: f64) -> Vec<[u32; 3]> {
         let mut out = Vec::new();
-        assert_eq!(split(corners, &mut out), Split::Exact);
+        assert_eq!(split_all(corners, &mut out), Split::Exact);
         for t in &out {
             assert!(signed_area(corners, &[*t]) * area.signum() >= 0.0, "triangle {t:?} is turned over");
         }
@@ -281,7 +286,7 @@ mod tests {
                     })
                     .collect();
                 let mut out = Vec::new();
-                assert_eq!(split(&corners, &mut out), Split::Exact);
+                assert_eq!(split_all(&corners, &mut out), Split::Exact);
                 let whole: Vec3 = (0..4).map(|i| corners[i].cross(corners[(i + 1) % 4])).sum();
                 let parts: Vec<Vec3> =
                     out.iter().map(|t| t.map(|i| corners[i as usize])).map(|[a, b, c]| (b - a).cross(c - a)).collect();
@@ -332,13 +337,13 @@ mod tests {
     #[test]
     fn what_is_no_simple_polygon_is_told() {
         let mut out = Vec::new();
-        assert_eq!(split(&points(&[(0.0, 0.0), (1.0, 1.0), (2.0, 2.0), (3.0, 3.0)]), &mut out), Split::Degenerate);
-        assert_eq!(split(&points(&[(0.0, 0.0), (1.0, 0.0), (0.0, 0.0), (1.0, 0.0)]), &mut out), Split::Degenerate);
+        assert_eq!(split_all(&points(&[(0.0, 0.0), (1.0, 1.0), (2.0, 2.0), (3.0, 3.0)]), &mut out), Split::Degenerate);
+        assert_eq!(split_all(&points(&[(0.0, 0.0), (1.0, 0.0), (0.0, 0.0), (1.0, 0.0)]), &mut out), Split::Degenerate);
         assert!(out.is_empty());
         let bow_tie = points(&[(0.0, 0.0), (2.0, 2.0), (2.0, 0.0), (0.0, 1.0)]);
-        assert_eq!(split(&bow_tie, &mut out), Split::Approximate);
+        assert_eq!(split_all(&bow_tie, &mut out), Split::Approximate);
         let star: Vec<(f32, f32)> = (0..5).map(|i| (i as f32 * 2.513_274).sin_cos()).collect();
-        assert_eq!(split(&points(&star), &mut out), Split::Approximate);
+        assert_eq!(split_all(&points(&star), &mut out), Split::Approximate);
     }
 
     #[test]
@@ -346,5 +351,13 @@ mod tests {
         let mut comb: Vec<(f32, f32)> = (0..20_000).map(|i| (i as f32, (i % 2) as f32)).collect();
         comb.extend([(19_999.0, -1.0), (0.0, -1.0)]);
         split_well(&points(&comb), -29_998.5);
+    }
+
+    #[test]
+    fn without_time_left_a_concave_polygon_becomes_a_fan() {
+        let arrow = points(&[(0.0, 0.0), (2.0, -1.0), (1.0, 0.0), (2.0, 1.0)]);
+        let mut out = Vec::new();
+        assert_eq!(split(&arrow, &mut 0, &mut out), Split::Approximate);
+        assert_eq!(out.len(), 2);
     }
 }
