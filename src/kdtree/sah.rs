@@ -220,14 +220,17 @@ fn search_small(primitives: &[Primitive], axes: &[AxisCost; 3], best: &mut Best)
                 }
             }
             let mut costs = [0.0; BLOCK];
-            let mut cheapest = f32::INFINITY;
             for k in 0..BLOCK {
                 costs[k] = axis_cost.at(block[k], lower[k] as f32, upper[k] as f32);
-                cheapest = min2(costs[k], cheapest);
             }
+            let mut halves = [0.0; BLOCK / 2];
+            for (k, half) in halves.iter_mut().enumerate() {
+                *half = min2(costs[k], costs[k + BLOCK / 2]);
+            }
+            let cheapest = halves.into_iter().fold(f32::INFINITY, min2);
             if cheapest <= best.cost {
-                for k in 0..BLOCK {
-                    best.offer(costs[k], axis, block[k], lower[k] as usize, upper[k] as usize);
+                for k in (0..BLOCK).filter(|&k| costs[k] == cheapest) {
+                    best.offer(cheapest, axis, block[k], lower[k] as usize, upper[k] as usize);
                 }
             }
         }
@@ -319,18 +322,18 @@ fn search_binned(primitives: &[Primitive], axes: &[AxisCost; 3], best: &mut Best
         if !any {
             continue;
         }
-        scratch.lows.clear();
-        scratch.highs.clear();
+        // Written always and kept if wanted: no branch that depends on the data.
+        scratch.lows.resize(primitives.len() + 1, 0);
+        scratch.highs.resize(primitives.len() + 1, 0);
+        let (mut i, mut j) = (0, 0);
         for p in primitives {
-            if counts.open[binning.bin(p.lo[a])] {
-                scratch.lows.push(sort_key(p.lo[a]));
-            }
-            if counts.open[binning.bin(p.hi[a])] {
-                scratch.highs.push(sort_key(p.hi[a]));
-            }
+            scratch.lows[i] = sort_key(p.lo[a]);
+            i += counts.open[binning.bin(p.lo[a])] as usize;
+            scratch.highs[j] = sort_key(p.hi[a]);
+            j += counts.open[binning.bin(p.hi[a])] as usize;
         }
-        scratch.lows.sort_unstable();
-        scratch.highs.sort_unstable();
+        scratch.lows[..i].sort_unstable();
+        scratch.highs[..j].sort_unstable();
         let (mut i, mut j) = (0, 0);
         for bin in (0..bins).filter(|&bin| counts.open[bin]) {
             let (first, last) = (counts.starts[bin] as usize, counts.ends[bin] as usize);
