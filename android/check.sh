@@ -43,7 +43,7 @@ make_stubs() { # ABI FROM-FOLDER TO-FOLDER
 make_linker() { # ABI STUBS FILE: the compiler driver that cargo links with
     cat >"$3" <<EOT
 #!/bin/sh
-exec clang --target=$(clang_target "$1") -fuse-ld=lld -nostdlib "-L$2" -Wl,-z,max-page-size=$page -Wl,--no-undefined "\$@"
+exec clang --target=$(clang_target "$1") -fuse-ld=lld -nostdlib "-L$2" -Wl,-z,max-page-size=$page -Wl,--no-undefined -Wl,--error-limit=0 "\$@"
 EOT
     chmod +x "$3"
 }

@@ -8,6 +8,7 @@
 pub mod backend;
 pub mod builtin;
 pub mod camera;
+pub mod compare;
 pub mod error;
 pub mod fallback;
 pub mod frame;
@@ -23,8 +24,10 @@ pub mod picture;
 pub mod pipeline;
 pub mod profiles;
 pub mod renderer;
+pub mod report;
 pub mod scene;
 pub mod scene_buffers;
+pub mod selftest;
 pub mod stage;
 pub mod twin;
 

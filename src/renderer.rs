@@ -341,8 +341,21 @@ const DEFAULT_BUDGET_BYTES: u64 = 4 << 30;
 
 fn open_device(buffers: &Arc<SceneBuffers>, options: &RendererOptions, notices: &mut Vec<String>) -> Result<Device> {
     let twin = || Device::Twin(TwinBackend::new(Arc::clone(buffers)));
+    match open_opencl(buffers, options) {
+        Ok(Some(backend)) => Ok(Device::OpenCl(Box::new(backend))),
+        Ok(None) => Ok(twin()),
+        Err(error @ Error::NoOpenCl { .. }) if options.device == DeviceChoice::Auto => {
+            notices.push(format!("drawing on the CPU twin: {error}"));
+            Ok(twin())
+        }
+        Err(error) => Err(error),
+    }
+}
+
+/// The OpenCL back end that `options` ask for; `None` if they ask for the CPU twin.
+pub(crate) fn open_opencl(buffers: &Arc<SceneBuffers>, options: &RendererOptions) -> Result<Option<OpenClBackend>> {
     let index = match options.device {
-        DeviceChoice::Cpu => return Ok(twin()),
+        DeviceChoice::Cpu => return Ok(None),
         DeviceChoice::Auto => None,
         DeviceChoice::OpenCl(index) => index,
     };
@@ -352,16 +365,7 @@ fn open_device(buffers: &Arc<SceneBuffers>, options: &RendererOptions, notices: 
         memory_budget_bytes: options.memory_budget_bytes,
         ..OpenOptions::default()
     };
-    let opened = opencl::open_with(&open).and_then(|door| {
-        let mut backend = OpenClBackend::new(door, buffers, options.strict)?;
-        backend.mutate(options.mutation.clone());
-        Ok(Device::OpenCl(Box::new(backend)))
-    });
-    match opened {
-        Err(error @ Error::NoOpenCl { .. }) if options.device == DeviceChoice::Auto => {
-            notices.push(format!("drawing on the CPU twin: {error}"));
-            Ok(twin())
-        }
-        other => other,
-    }
+    let mut backend = OpenClBackend::new(opencl::open_with(&open)?, buffers, options.strict)?;
+    backend.mutate(options.mutation.clone());
+    Ok(Some(backend))
 }

@@ -419,6 +419,64 @@ fn every_limit_refuses_with_its_numbers() {
     }
 }
 
+/// Programs from the cache must not escape the checks.
+#[test]
+fn limits_hold_for_cached_programs() {
+    if no_opencl() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let cache = CacheFolder::At(folder.path().to_path_buf());
+    let tight = profile(&[("cl_device_max_constant_args", "1")]);
+    for from_cache in [false, true] {
+        let door = door_with(&OpenOptions { cache: cache.clone(), profile: Some(tight.clone()), ..options() });
+        let program = door.program(&ProgramSource { name: "door-test", source: SOURCE, options: "" }).unwrap();
+        assert_eq!(program.is_from_cache(), from_cache);
+        let kernel = program.kernel("pick").unwrap();
+        let a = door.buffer_from("a", &[1u32]).unwrap();
+        let args = [Arg::Buffer(&a), Arg::Buffer(&a), Arg::Buffer(&a)];
+        let global = [1, 1];
+        let launch = Launch { label: "pick", kernel: &kernel, args: &args, global, local: None, barrier: false };
+        let message = door.launch(&launch).unwrap_err().to_string();
+        assert!(message.contains("CL_DEVICE_MAX_CONSTANT_ARGS"), "{message}");
+    }
+}
+
+#[test]
+fn an_enqueue_beyond_the_watchdog_is_an_error() {
+    if no_opencl() || door().info().is_simulator() {
+        return;
+    }
+    let entry = r#"{"value":1,"certainty":"inferred","source":"test"}"#;
+    let text = format!(r#"{{"limits":{{}},"hardware":{{"gpu_batch_timeout_ms":{entry}}}}}"#);
+    let strict = Profile::from_json("strict", &text).unwrap();
+    let door = door_with(&OpenOptions { profile: Some(strict), ..options() });
+    let source = "kernel void slow(global uint *out) {
+        uint v = (uint)get_global_id(0);
+        for (uint i = 0; i < 2000u; i++) v = v * 1664525u + (v >> 7) + 1013904223u;
+        out[get_global_id(0)] = v;
+    }";
+    let program = door.program(&ProgramSource { name: "slow", source, options: "" }).unwrap();
+    let kernel = program.kernel("slow").unwrap();
+    let out = door.buffer::<u32>("out", 1 << 18).unwrap();
+    let args = [Arg::Buffer(&out)];
+    let launch = Launch {
+        label: "slow",
+        kernel: &kernel,
+        args: &args,
+        global: [1 << 18, 1],
+        local: Some([64, 1]),
+        barrier: false,
+    };
+    // The first run of a stage is not judged: it may include its compilation.
+    door.launch(&launch).unwrap();
+    door.finish().unwrap();
+    let message = door.launch(&launch).and_then(|()| door.finish()).unwrap_err().to_string();
+    assert!(message.contains("`slow`") && message.contains("gpu_batch_timeout_ms"), "{message}");
+    assert!(message.contains("allows 1 ms") && message.contains("slice_ms"), "{message}");
+    door.finish().unwrap();
+}
+
 #[test]
 fn work_groups_adapt_to_half_of_a_limit() {
     if no_opencl() {

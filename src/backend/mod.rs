@@ -2,6 +2,7 @@
 //! Where kernels run: on an OpenCL device or as their CPU twins, behind one interface.
 
 pub mod opencl;
+pub mod parity;
 pub mod twin;
 
 use crate::error::Result;

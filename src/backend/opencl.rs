@@ -111,6 +111,29 @@ impl OpenClBackend {
         self.program_ms
     }
 
+    /// Sizes and offsets of the shared structs as this device's compiler lays them out.
+    ///
+    /// # Errors
+    /// A program that does not build, or a failing call.
+    pub fn probe(&mut self) -> Result<Vec<u32>> {
+        let len = layout::expected_probe().len();
+        let out: Buffer<u32> = self.door.buffer("probe", len)?;
+        let source = kernels::assemble("probe.cl", self.mutation.as_ref());
+        let options = layout::build_options(self.flavour);
+        let program = self.door.program(&ProgramSource { name: "probe", source: &source, options: &options })?;
+        let kernel = program.kernel("probe")?;
+        let args = [Arg::Buffer(&out)];
+        self.door.launch(&Launch {
+            label: "probe",
+            kernel: &kernel,
+            args: &args,
+            global: [1, 1],
+            local: Some([1, 1]),
+            barrier: false,
+        })?;
+        self.door.read(&out, 0..len)
+    }
+
     /// The device.
     pub fn door(&self) -> &Door {
         &self.door

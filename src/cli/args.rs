@@ -283,8 +283,12 @@ pub fn profile(name: &str) -> Result<Option<Profile>> {
     if name == "none" {
         return Ok(None);
     }
-    let path = std::path::Path::new(name);
-    if path.is_file() { Profile::load(path).map(Some) } else { Profile::named(name).map(Some) }
+    if Profile::names().contains(&name) { Profile::named(name).map(Some) } else { load_profile(name).map(Some) }
+}
+
+fn load_profile(name: &str) -> Result<Profile> {
+    let looks_like_a_path = name.contains(['/', '.', '#']);
+    if looks_like_a_path { Profile::load(std::path::Path::new(name)) } else { Profile::named(name) }
 }
 
 /// `rarefy render`.

@@ -60,7 +60,7 @@ pub fn load_scene(name: &str, progress: &Progress) -> Result<Scene> {
     if !path.exists() && builtin::NAMES.contains(&name) {
         return builtin::to_scene(name);
     }
-    scene::load::load(path, &|phase, share| progress.update(phase, share))
+    scene::load(path, &|phase, share| progress.update(phase, share))
 }
 
 /// Loads a scene and makes a renderer of it; the milliseconds are those of the loading.

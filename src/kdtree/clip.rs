@@ -60,9 +60,12 @@ pub(super) fn whole(id: u32, corners: [glam::Vec3; 3], epsilon: f32) -> Primitiv
     Primitive { lo: lo.to_array(), id, hi: hi.to_array(), unused: 0 }
 }
 
-/// A convex polygon: a triangle has at most one corner more after each of six cuts.
+/// A triangle has at most one corner more after each of six cuts.
+const MOST_CORNERS: usize = 9;
+
+/// A convex polygon.
 struct Polygon {
-    corners: [[f64; 3]; 9],
+    corners: [[f64; 3]; MOST_CORNERS],
     count: usize,
 }
 
@@ -76,30 +79,33 @@ fn crossing(p: &[f64; 3], q: &[f64; 3], axis: usize, plane: f64) -> [f64; 3] {
 }
 
 impl Polygon {
-    /// Keeps the part with `sign * coordinate <= sign * plane`.
-    fn cut(&mut self, axis: usize, plane: f64, sign: f64) {
-        let inside = |p: &[f64; 3]| sign * p[axis] <= sign * plane;
-        let kept = self.corners[..self.count].iter().filter(|p| inside(p)).count();
-        if kept == self.count || kept == 0 {
-            self.count = kept;
-            return;
+    fn corners(&self) -> &[[f64; 3]] {
+        &self.corners[..self.count]
+    }
+
+    fn push(&mut self, corner: [f64; 3]) {
+        // More corners cannot be, but the compiler does not know.
+        if self.count < MOST_CORNERS {
+            self.corners[self.count] = corner;
+            self.count += 1;
         }
-        let mut result = [[0.0; 3]; 9];
-        let mut count = 0;
-        let mut p = &self.corners[self.count - 1];
-        for q in &self.corners[..self.count] {
-            if inside(p) != inside(q) && count < 9 {
-                result[count] = crossing(p, q, axis, plane);
-                count += 1;
+    }
+
+    /// Writes the part with `sign * coordinate <= sign * plane` to `part`.
+    fn cut(&self, axis: usize, plane: f64, sign: f64, part: &mut Polygon) {
+        part.count = 0;
+        let Some(mut p) = self.corners().last() else { return };
+        let mut p_inside = sign * p[axis] <= sign * plane;
+        for q in self.corners() {
+            let q_inside = sign * q[axis] <= sign * plane;
+            if p_inside != q_inside {
+                part.push(crossing(p, q, axis, plane));
             }
-            if inside(q) && count < 9 {
-                result[count] = *q;
-                count += 1;
+            if q_inside {
+                part.push(*q);
             }
-            p = q;
+            (p, p_inside) = (q, q_inside);
         }
-        self.corners = result;
-        self.count = count;
     }
 
     /// Bounds of the part with `sign * coordinate <= sign * plane`; `lo > hi` if nothing is left.
@@ -107,21 +113,21 @@ impl Polygon {
         let (mut lo, mut hi) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
         let mut add = |point: &[f64; 3]| {
             for a in 0..3 {
-                lo[a] = lo[a].min(point[a]);
-                hi[a] = hi[a].max(point[a]);
+                lo[a] = if point[a] < lo[a] { point[a] } else { lo[a] };
+                hi[a] = if point[a] > hi[a] { point[a] } else { hi[a] };
             }
         };
-        let inside = |p: &[f64; 3]| sign * p[axis] <= sign * plane;
-        if self.count > 0 {
-            let mut p = &self.corners[self.count - 1];
-            for q in &self.corners[..self.count] {
-                if inside(p) != inside(q) {
+        if let Some(mut p) = self.corners().last() {
+            let mut p_inside = sign * p[axis] <= sign * plane;
+            for q in self.corners() {
+                let q_inside = sign * q[axis] <= sign * plane;
+                if p_inside != q_inside {
                     add(&crossing(p, q, axis, plane));
                 }
-                if inside(q) {
+                if q_inside {
                     add(q);
                 }
-                p = q;
+                (p, p_inside) = (q, q_inside);
             }
         }
         (lo, hi)
@@ -137,11 +143,21 @@ pub(super) fn split_primitive(
     epsilon: f32,
 ) -> (Option<Primitive>, Option<Primitive>) {
     let epsilon = epsilon as f64;
-    let mut polygon = Polygon { corners: [[0.0; 3]; 9], count: 3 };
+    let mut buffers = [const { Polygon { corners: [[0.0; 3]; MOST_CORNERS], count: 0 } }; 2];
+    let [polygon, spare] = &mut buffers;
+    let (mut polygon, mut spare) = (polygon, spare);
     polygon.corners[..3].copy_from_slice(corners);
+    polygon.count = 3;
     for a in 0..3 {
-        polygon.cut(a, primitive.lo[a] as f64 - epsilon, -1.0);
-        polygon.cut(a, primitive.hi[a] as f64 + epsilon, 1.0);
+        let (lo, hi) = (primitive.lo[a] as f64 - epsilon, primitive.hi[a] as f64 + epsilon);
+        if corners.iter().any(|p| p[a] < lo) {
+            polygon.cut(a, lo, -1.0, spare);
+            (polygon, spare) = (spare, polygon);
+        }
+        if corners.iter().any(|p| p[a] > hi) {
+            polygon.cut(a, hi, 1.0, spare);
+            (polygon, spare) = (spare, polygon);
+        }
     }
     let fitted = |outer: Primitive, (lo, hi): ([f64; 3], [f64; 3])| {
         let mut part = outer;

@@ -10,6 +10,12 @@
 use super::clip::{Cell, Primitive};
 use crate::math::{clamp, max2, min2};
 
+/// Up to here every candidate is counted against every primitive: no sorting at all.
+const SMALL: usize = 32;
+
+/// Candidates that are counted together.
+const BLOCK: usize = 8;
+
 /// Most bins on an axis.
 const MAX_BINS: usize = 256;
 
@@ -186,42 +192,46 @@ pub(super) fn best_split(primitives: &[Primitive], cell: &Cell, costs: &Costs, s
     let axes = [0, 1, 2].map(|axis| AxisCost::new(cell, axis, costs));
     let mut best = Best { split: None, cost: leaf_cost };
     match primitives.len() {
-        0..=4 => search_small::<4, 8>(primitives, &axes, &mut best),
-        5..=8 => search_small::<8, 16>(primitives, &axes, &mut best),
-        9..=16 => search_small::<16, 32>(primitives, &axes, &mut best),
-        17..=32 => search_small::<32, 64>(primitives, &axes, &mut best),
+        0..=SMALL => search_small(primitives, &axes, &mut best),
         _ => search_binned(primitives, &axes, &mut best, scratch),
     }
     best.split
 }
 
-/// Counts every candidate against every primitive, on all axes. `N` is at least the number of primitives, `M = 2 N`:
-/// arrays of fixed sizes and no branches, so that the compiler does it in vectors.
-fn search_small<const N: usize, const M: usize>(primitives: &[Primitive], axes: &[AxisCost; 3], best: &mut Best) {
+/// Counts every candidate against every primitive, on all axes; a block of candidates at a time, in arrays of fixed
+/// size and without branches, so that the compiler does it in vectors.
+fn search_small(primitives: &[Primitive], axes: &[AxisCost; 3], best: &mut Best) {
+    let count = primitives.len().min(SMALL);
     for (axis, axis_cost) in axes.iter().enumerate() {
-        let mut positions = [f32::INFINITY; M];
-        for (i, p) in primitives.iter().enumerate().take(N) {
-            positions[i] = p.lo[axis];
-            positions[N + i] = p.hi[axis];
+        let (mut lows, mut highs) = ([0.0; SMALL], [0.0; SMALL]);
+        // What follows the last candidate lies in no cell.
+        let mut positions = [f32::INFINITY; 2 * SMALL];
+        for (i, p) in primitives[..count].iter().enumerate() {
+            (lows[i], highs[i]) = (p.lo[axis], p.hi[axis]);
+            (positions[i], positions[count + i]) = (p.lo[axis], p.hi[axis]);
         }
-        let (mut lower, mut upper) = ([0i32; M], [0i32; M]);
-        for p in primitives {
-            let (lo, hi) = (p.lo[axis], p.hi[axis]);
-            for i in 0..M {
-                lower[i] += (lo < positions[i]) as i32;
-                upper[i] += (hi > positions[i]) as i32;
+        let blocks = (2 * count).div_ceil(BLOCK);
+        for block in positions.as_chunks::<BLOCK>().0[..blocks].iter() {
+            let (mut lower, mut upper) = ([0i32; BLOCK], [0i32; BLOCK]);
+            for (&lo, &hi) in lows[..count].iter().zip(&highs[..count]) {
+                for k in 0..BLOCK {
+                    lower[k] += (lo < block[k]) as i32;
+                    upper[k] += (hi > block[k]) as i32;
+                }
             }
-        }
-        let mut costs = [0.0; M];
-        let mut cheapest = f32::INFINITY;
-        for i in 0..M {
-            costs[i] = axis_cost.at(positions[i], lower[i] as f32, upper[i] as f32);
-            cheapest = min2(costs[i], cheapest);
-        }
-        // Axes in turn and lowest position first, as the sweep would find it.
-        if cheapest < best.cost {
-            for i in 0..M {
-                best.offer(costs[i], axis, positions[i], lower[i] as usize, upper[i] as usize);
+            let mut costs = [0.0; BLOCK];
+            for k in 0..BLOCK {
+                costs[k] = axis_cost.at(block[k], lower[k] as f32, upper[k] as f32);
+            }
+            let mut halves = [0.0; BLOCK / 2];
+            for (k, half) in halves.iter_mut().enumerate() {
+                *half = min2(costs[k], costs[k + BLOCK / 2]);
+            }
+            let cheapest = halves.into_iter().fold(f32::INFINITY, min2);
+            if cheapest <= best.cost {
+                for k in (0..BLOCK).filter(|&k| costs[k] == cheapest) {
+                    best.offer(cheapest, axis, block[k], lower[k] as usize, upper[k] as usize);
+                }
             }
         }
     }
@@ -289,11 +299,9 @@ fn search_binned(primitives: &[Primitive], axes: &[AxisCost; 3], best: &mut Best
         axis.ends[..bins].fill(0);
     }
     for p in primitives {
-        let starts = [0, 1, 2].map(|a| binnings[a].bin(p.lo[a]));
-        let ends = [0, 1, 2].map(|a| binnings[a].bin(p.hi[a]));
-        for a in 0..3 {
-            scratch.axes[a].starts[starts[a]] += 1;
-            scratch.axes[a].ends[ends[a]] += 1;
+        for (a, counts) in scratch.axes.iter_mut().enumerate() {
+            counts.starts[binnings[a].bin(p.lo[a])] += 1;
+            counts.ends[binnings[a].bin(p.hi[a])] += 1;
         }
     }
 
@@ -314,18 +322,18 @@ fn search_binned(primitives: &[Primitive], axes: &[AxisCost; 3], best: &mut Best
         if !any {
             continue;
         }
-        scratch.lows.clear();
-        scratch.highs.clear();
+        // Written always and kept if wanted: no branch that depends on the data.
+        scratch.lows.resize(primitives.len() + 1, 0);
+        scratch.highs.resize(primitives.len() + 1, 0);
+        let (mut i, mut j) = (0, 0);
         for p in primitives {
-            if counts.open[binning.bin(p.lo[a])] {
-                scratch.lows.push(sort_key(p.lo[a]));
-            }
-            if counts.open[binning.bin(p.hi[a])] {
-                scratch.highs.push(sort_key(p.hi[a]));
-            }
+            scratch.lows[i] = sort_key(p.lo[a]);
+            i += counts.open[binning.bin(p.lo[a])] as usize;
+            scratch.highs[j] = sort_key(p.hi[a]);
+            j += counts.open[binning.bin(p.hi[a])] as usize;
         }
-        scratch.lows.sort_unstable();
-        scratch.highs.sort_unstable();
+        scratch.lows[..i].sort_unstable();
+        scratch.highs[..j].sort_unstable();
         let (mut i, mut j) = (0, 0);
         for bin in (0..bins).filter(|&bin| counts.open[bin]) {
             let (first, last) = (counts.starts[bin] as usize, counts.ends[bin] as usize);

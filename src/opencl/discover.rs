@@ -11,7 +11,7 @@ use opencl3::platform::platform::{
 };
 use serde_json::{Value, json};
 
-use super::limits::parse_version;
+use super::limits::{Limits, parse_version};
 use super::{Kind, QUERIES, Query, codes, library};
 use crate::profiles::{Certainty, Choices, Entry, Profile};
 
@@ -61,6 +61,13 @@ pub struct DeviceFound {
     pub info: DeviceInfo,
     /// Everything that it answered, as a profile.
     pub profile: Profile,
+}
+
+impl DeviceFound {
+    /// What the door would enforce on this device, under `profile` if given.
+    pub fn limits(&self, profile: Option<&Profile>) -> Limits {
+        Limits::new(&self.profile, profile)
+    }
 }
 
 /// A raw device id.

@@ -200,15 +200,15 @@ impl Limits {
         let remedy = "choose a smaller work-group in the profile's `choices`";
         let unit = " work-items";
         for (axis, side) in sides.into_iter().enumerate() {
-            let what = format!("{what}: work-group side {axis}");
+            let what = format!("side {axis} of the work-group of {what}");
             let allowed = self.max_work_item_sizes[axis];
             self.most(&what, "cl_device_max_work_item_sizes", side, allowed, unit, remedy)?;
         }
-        let what = format!("{what}: a work-group of {}x{}", local[0], local[1]);
+        let what = format!("the {}x{} work-group of {what}", local[0], local[1]);
         self.most(&what, "cl_device_max_work_group_size", total, self.max_work_group_size, unit, remedy)?;
         if barrier {
             let allowed = self.barrier_work_group_size;
-            let what = format!("{what} with barriers");
+            let what = format!("{what}, which has barriers,");
             self.most(&what, "cl_kernel_work_group_size", total, allowed, unit, remedy)?;
         }
         if total > kernel_cap {
@@ -236,22 +236,22 @@ impl Limits {
 
     /// Checks the local memory of a work-group, in bytes.
     pub fn check_local_memory(&self, what: &str, bytes: u64) -> Result<()> {
-        let what = format!("{what}: local memory");
+        let what = format!("the local memory of {what}");
         self.most(&what, "cl_device_local_mem_size", bytes, self.local_mem_bytes, " bytes", "use a smaller work-group")
     }
 
     /// Checks the bytes of all arguments of a kernel.
     pub fn check_parameters(&self, what: &str, bytes: u64) -> Result<()> {
-        let what = format!("{what}: kernel arguments");
+        let what = format!("the argument list of {what}");
         self.most(&what, "cl_device_max_parameter_size", bytes, self.max_parameter_bytes, " bytes", "")
     }
 
     /// Checks the sizes of a kernel's `constant` arguments, in bytes.
     pub fn check_constants(&self, what: &str, sizes: &[u64]) -> Result<()> {
         let count = sizes.len() as u64;
-        let what_count = format!("{what}: constant arguments");
+        let what_count = format!("the number of constant arguments of {what}");
         self.most(&what_count, "cl_device_max_constant_args", count, self.max_constant_args, "", "")?;
-        let what = format!("{what}: a constant argument");
+        let what = format!("a constant argument of {what}");
         sizes.iter().try_for_each(|&bytes| {
             let allowed = self.max_constant_buffer_bytes;
             self.most(&what, "cl_device_max_constant_buffer_size", bytes, allowed, " bytes", "")
@@ -260,9 +260,9 @@ impl Limits {
 
     /// Checks the number of images that a kernel reads and writes.
     pub fn check_image_args(&self, what: &str, read: u64, written: u64) -> Result<()> {
-        let read_what = format!("{what}: images read");
+        let read_what = format!("the number of images read by {what}");
         self.most(&read_what, "cl_device_max_read_image_args", read, self.read_image_args, "", "")?;
-        let what = format!("{what}: images written");
+        let what = format!("the number of images written by {what}");
         self.most(&what, "cl_device_max_write_image_args", written, self.write_image_args, "", "")
     }
 
@@ -271,9 +271,9 @@ impl Limits {
         self.check_images(what)?;
         let remedy = "use the memory path `buffers`";
         let pixels = " pixels";
-        let side = format!("{what}: width");
+        let side = format!("the width of {what}");
         self.most(&side, "cl_device_image2d_max_width", width, self.image2d[0], pixels, remedy)?;
-        let side = format!("{what}: height");
+        let side = format!("the height of {what}");
         self.most(&side, "cl_device_image2d_max_height", height, self.image2d[1], pixels, remedy)?;
         self.most(what, "cl_device_image_max_array_size", layers, self.image_layers.max(1), " layers", remedy)
     }
@@ -299,7 +299,7 @@ impl Limits {
             return Ok(());
         }
         Err(Error::LimitExceeded {
-            what: format!("{what}: a sub-buffer"),
+            what: format!("a sub-buffer of {what}"),
             limit: self.name("cl_device_mem_base_addr_align"),
             wanted: format!("a start at byte {offset}"),
             allowed: format!("multiples of {align} bytes"),
@@ -339,7 +339,7 @@ impl Limits {
     pub fn check_global(&self, what: &str, items: u64) -> Result<()> {
         // This program's own `size_t` counts as well.
         let allowed = if self.address_bits >= 64 { usize::MAX as u64 } else { u64::from(u32::MAX) };
-        self.most(&format!("{what}: a launch"), "cl_device_address_bits", items, allowed, " work-items", "")
+        self.most(&format!("a launch of {what}"), "cl_device_address_bits", items, allowed, " work-items", "")
     }
 }
 

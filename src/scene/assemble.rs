@@ -46,8 +46,8 @@ pub(super) struct Geometry {
 }
 
 /// What happened to faces, for the warnings.
-#[derive(Default)]
 struct Faces {
+    tests_left: u64,
     polygons_approximate: usize,
     first_approximate: Option<String>,
     polygons_degenerate: usize,
@@ -82,7 +82,12 @@ pub(super) fn assemble(
     geometry.corners_without_normal.reserve_exact(total);
 
     let mut objects: HashMap<(String, u32), u32> = HashMap::new();
-    let mut faces = Faces::default();
+    let mut faces = Faces {
+        tests_left: triangulate::MAX_TESTS,
+        polygons_approximate: 0,
+        first_approximate: None,
+        polygons_degenerate: 0,
+    };
     let mut welder = Welder::default();
     let mut models = file.models.into_iter().peekable();
     while let Some(model) = models.next() {
@@ -205,7 +210,7 @@ fn add_faces(g: &mut Geometry, faces: &mut Faces, mesh: &tobj::Mesh, indices: &[
             corners.clear();
             corners.extend(vertices.iter().map(|&v| g.positions[indices[v as usize] as usize]));
             split.clear();
-            match triangulate::split(&corners, &mut split) {
+            match triangulate::split(&corners, &mut faces.tests_left, &mut split) {
                 Split::Exact => {}
                 Split::Degenerate => faces.polygons_degenerate += 1,
                 Split::Approximate => {

@@ -5,7 +5,7 @@
 
 use super::fit::Extents;
 use super::{Material, Scene};
-use crate::math::{cross, dot};
+use crate::math::{cross, dot, unpack_normal};
 
 /// How much a finding matters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -22,7 +22,8 @@ pub struct Finding {
     /// How much it matters.
     pub severity: Severity,
     /// What it is about, in one or two words that do not change: `normals`, `texture coordinates`, `triangles`,
-    /// `textures`, `extent`, `names`, `winding`, `materials`, `lights` or `loading`.
+    /// `extent`, `names`, `winding`, `materials`, `lights`, or `loading` for what was mended or left out then (missing
+    /// textures and materials, degenerate triangles).
     pub topic: &'static str,
     /// One sentence with the numbers, and the remedy where there is one.
     pub message: String,
@@ -83,11 +84,6 @@ fn attributes(scene: &Scene, tell: Tell) {
             format!("{count} triangles in textured materials have no texture coordinates; one texel colours them");
         tell(Severity::Warning, "texture coordinates", message);
     }
-    if !notes.missing_textures.is_empty() {
-        let count = notes.missing_textures.len();
-        let message = format!("{count} textures are missing: {}", some_of(&notes.missing_textures));
-        tell(Severity::Warning, "textures", message);
-    }
     if !notes.duplicate_names.is_empty() {
         let names = some_of(&notes.duplicate_names);
         let count = notes.duplicate_names.len();
@@ -115,12 +111,8 @@ fn materials(scene: &Scene, tell: Tell) {
     }
 }
 
-/// Degenerate triangles, needles and giants.
+/// Needles and giants. (What has no area was left out while loading, with a warning.)
 fn triangles(scene: &Scene, tell: Tell) {
-    if scene.notes.dropped_triangles > 0 {
-        let message = format!("{} triangles have no area and were left out", scene.notes.dropped_triangles);
-        tell(Severity::Note, "triangles", message);
-    }
     let (mut needles, mut giants) = (0, Vec::new());
     for (triangle, &object) in scene.triangles.iter().zip(&scene.triangle_objects) {
         let [a, b, c] = triangle.map(|v| scene.positions[v as usize]);
@@ -244,8 +236,135 @@ fn winding(scene: &Scene, tell: Tell) {
         );
         tell(Severity::Note, "winding", message);
     }
+    let against = wound_against_normals(scene);
+    if against > 0 {
+        let share = percent(against, scene.triangles.len());
+        let message = format!("{share} triangles are wound against their shading normals; drawn two-sided");
+        tell(Severity::Note, "winding", message);
+    }
     if crowded > 0 {
         let message = format!("{crowded} edges belong to more than two triangles (duplicate or inner faces)");
         tell(Severity::Note, "triangles", message);
+    }
+}
+
+/// Triangles all of whose corners have a shading normal on the other side than the winding says.
+fn wound_against_normals(scene: &Scene) -> usize {
+    let against = |(triangle, normals): (&[u32; 3], &[u32; 3])| {
+        let [a, b, c] = triangle.map(|v| scene.positions[v as usize]);
+        let face = cross(b - a, c - a);
+        normals.iter().all(|&n| dot(face, unpack_normal(n)) < 0.0)
+    };
+    scene.triangles.iter().zip(&scene.corner_normals).filter(|&both| against(both)).count()
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{Vec2, Vec3};
+
+    use super::super::{Light, Object};
+    use super::*;
+    use crate::math::pack_normal;
+
+    /// A sheet of `n` by `n` unit squares in the xy plane, wound counter-clockwise, with a light: nothing is odd.
+    fn sheet(n: u32) -> Scene {
+        let mut scene = Scene { materials: vec![Material::default()], ..Scene::default() };
+        for y in 0..=n {
+            scene.positions.extend((0..=n).map(|x| Vec3::new(x as f32, y as f32, 0.0)));
+        }
+        for y in 0..n {
+            for x in 0..n {
+                let at = |dx: u32, dy: u32| (y + dy) * (n + 1) + x + dx;
+                scene.triangles.extend([[at(0, 0), at(1, 0), at(1, 1)], [at(0, 0), at(1, 1), at(0, 1)]]);
+            }
+        }
+        let count = scene.triangles.len();
+        scene.corner_normals = vec![[pack_normal(Vec3::Z); 3]; count];
+        scene.corner_texcoords = vec![[Vec2::ZERO; 3]; count];
+        scene.triangle_objects = vec![0; count];
+        scene.objects = vec![Object { name: "sheet".into(), material: 0 }];
+        scene.view.lights = vec![Light { position: Vec3::Z, intensity: Vec3::ONE }];
+        scene.view.extent = n as f32;
+        scene
+    }
+
+    #[track_caller]
+    fn finds(scene: &Scene, severity: Severity, topic: &str, words: &str) {
+        let findings = examine(scene);
+        let fits = |f: &Finding| f.severity == severity && f.topic == topic && f.message.contains(words);
+        assert!(findings.iter().any(fits), "no {severity:?} about {topic} with `{words}`: {findings:#?}");
+    }
+
+    #[test]
+    fn nothing_is_odd_about_a_plain_sheet() {
+        assert_eq!(examine(&sheet(20)), []);
+    }
+
+    #[test]
+    fn turned_triangles_are_counted_by_edges_and_by_normals() {
+        let mut scene = sheet(20);
+        // In the middle: all three edges have a neighbour.
+        scene.triangles[411].swap(0, 1);
+        finds(&scene, Severity::Note, "winding", "mixed: at 3 of 1160 (0.3 %) edges");
+        finds(&scene, Severity::Note, "winding", "1 of 800 (0.1 %) triangles are wound against their shading normals");
+        // Vertices that are doubled do not hide it.
+        let turned = scene.triangles[411];
+        for (corner, v) in turned.into_iter().enumerate() {
+            scene.positions.push(scene.positions[v as usize]);
+            scene.triangles[411][corner] = scene.positions.len() as u32 - 1;
+        }
+        finds(&scene, Severity::Note, "winding", "mixed: at 3 of 1160");
+    }
+
+    #[test]
+    fn an_outlier_is_named_with_its_object_and_its_size() {
+        let mut scene = sheet(20);
+        scene.positions.extend([Vec3::new(500.0, 0.0, 0.0), Vec3::new(500.0, 1.0, 0.0)]);
+        scene.triangles.push([0, 441, 442]);
+        scene.corner_normals.push([pack_normal(Vec3::Z); 3]);
+        scene.corner_texcoords.push([Vec2::ZERO; 3]);
+        scene.triangle_objects.push(1);
+        scene.objects.push(Object { name: "ground".into(), material: 0 });
+        finds(&scene, Severity::Warning, "extent", "500 long, that of the middle 98 % 20 (farthest out: `ground`)");
+        finds(&scene, Severity::Note, "triangles", "1 triangles are longer than 2 extents (20 each), in `ground`");
+        scene.notes.extent_given = true;
+        finds(&scene, Severity::Note, "extent", "view.json says 20, which counts");
+    }
+
+    #[test]
+    fn needles_crowded_edges_and_wrong_extents_are_told() {
+        let mut scene = sheet(20);
+        scene.positions.push(Vec3::new(10.0, 1.0e-4, 0.0));
+        scene.triangles[0] = [0, 20, 441];
+        finds(&scene, Severity::Note, "triangles", "1 of 800 (0.1 %) triangles are needles");
+        let mut scene = sheet(20);
+        scene.triangles[700] = scene.triangles[411];
+        finds(&scene, Severity::Note, "triangles", "3 edges belong to more than two triangles");
+        scene.view.extent = 1000.0;
+        finds(&scene, Severity::Warning, "extent", "extent is 1000, but the scene is 20 long");
+    }
+
+    #[test]
+    fn what_loading_counted_and_said_is_passed_on() {
+        let mut scene = sheet(2);
+        scene.warnings.push("a.png: texture not found".into());
+        scene.notes.triangles_without_normals = 4;
+        scene.notes.triangles_without_texcoords = 3;
+        scene.notes.duplicate_names.push("chair".into());
+        finds(&scene, Severity::Warning, "loading", "a.png: texture not found");
+        finds(&scene, Severity::Note, "normals", "4 of 8 (50.0 %)");
+        finds(&scene, Severity::Warning, "texture coordinates", "3 triangles");
+        finds(&scene, Severity::Note, "names", "`chair`");
+        assert_eq!(examine(&scene)[0].severity, Severity::Warning);
+    }
+
+    #[test]
+    fn materials_and_lights_that_show_nothing_are_told() {
+        let mut scene = sheet(2);
+        scene.materials.push(Material { diffuse: Vec3::ZERO, diffuse_texture: Some(0), ..Material::default() });
+        scene.view.lights.clear();
+        finds(&scene, Severity::Warning, "materials", "blackens the texture of `(default)`");
+        finds(&scene, Severity::Warning, "names", "1 material names occur twice: `(default)`");
+        finds(&scene, Severity::Warning, "lights", "no light shines");
     }
 }

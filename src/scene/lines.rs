@@ -183,6 +183,14 @@ pub(super) fn keyword(line: &[u8]) -> (&[u8], &[u8]) {
     (&line[..end], line[end..].trim_ascii())
 }
 
+/// A line of numbers without the comment that may follow them.
+pub(super) fn without_comment(line: &[u8]) -> &[u8] {
+    match line.iter().position(|&b| b == b'#') {
+        Some(end) => line[..end].trim_ascii_end(),
+        None => line,
+    }
+}
+
 /// The words of a line.
 pub(super) fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> {
     line.split(u8::is_ascii_whitespace).filter(|w| !w.is_empty())

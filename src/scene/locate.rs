@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use super::lines::{LogicalLines, keyword, words};
+use super::lines::{LogicalLines, keyword, without_comment, words};
 use super::obj::MAX_COORDINATE;
 use crate::Error;
 
@@ -15,6 +15,7 @@ pub(super) fn bad_number(path: &Path) -> Option<Error> {
     loop {
         let (number, line) = lines.next_line().ok()??;
         let (key, rest) = keyword(line);
+        let rest = without_comment(rest);
         let least = match key {
             b"v" | b"vn" => 3,
             b"vt" => 1,
@@ -51,7 +52,7 @@ fn check(rest: &[u8], least: usize, is_position: bool) -> Result<(), String> {
     if weight == 0.0 {
         return Err("the weight (fourth number) is 0; leave it out".into());
     }
-    match values.iter().take(3).find(|v| !((**v / weight).abs() <= MAX_COORDINATE)) {
+    match values.iter().take(3).find(|v| (**v / weight).abs() > MAX_COORDINATE) {
         Some(v) => Err(format!("{} is out of range (at most {MAX_COORDINATE:e}); scale the model down", v / weight)),
         None => Ok(()),
     }

@@ -2,7 +2,7 @@
 //! What is drawn: triangles, objects, materials, textures, and the view (camera, lights, environment).
 //!
 //! A [`Scene`] is plain data in scene units, valid by construction: every index is in range, every number is finite,
-//! and it has at least one triangle with an area. [`load`] makes one from files; [`crate::builtin`] from parameters.
+//! and it has at least one triangle with an area. [`load()`] makes one from files; [`crate::builtin`] from parameters.
 
 mod assemble;
 pub mod doctor;

@@ -16,7 +16,7 @@ use std::path::Path;
 use glam::{Vec2, Vec3};
 
 use super::assemble::TexcoordMap;
-use super::lines::{LogicalLines, keyword, name_text, words};
+use super::lines::{LogicalLines, keyword, name_text, without_comment, words};
 use crate::{Error, Result};
 
 /// A `map_` line.
@@ -179,10 +179,9 @@ fn check(path: &Path, warnings: &mut Vec<String>) -> Result<Checked> {
     Ok(checked)
 }
 
-/// The numbers of a line, up to the first word of a comment.
+/// The numbers of a line.
 fn numbers(rest: &[u8]) -> std::result::Result<Vec<f32>, String> {
-    words(rest)
-        .take_while(|w| w[0] != b'#')
+    words(without_comment(rest))
         .map(|word| {
             let text = String::from_utf8_lossy(&word[..word.len().min(60)]);
             match text.parse::<f32>() {
@@ -260,7 +259,7 @@ mod tests {
                     map_Kd -s 2 3 1 -clamp off my wood.jpg\nmap_d a.png\nnewmtl b\nd 0.5\n";
         let (materials, warnings) = read_text(text);
         let materials = materials.unwrap();
-        assert_eq!(warnings, [String::new(); 0]);
+        assert!(warnings.is_empty(), "{warnings:?}");
         let m = &materials[0];
         assert_eq!(
             (m.name.as_str(), m.diffuse, m.specular),

@@ -132,3 +132,103 @@ fn sums_by_direction(around: &[Around]) -> Vec<Vec3> {
     }
     places.iter().map(|&place| sums[place]).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use std::f32::consts::{PI, TAU};
+
+    use super::*;
+    use crate::math::unpack_normal;
+
+    fn normals_of(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<[Vec3; 3]> {
+        let mut packed = vec![[0; 3]; triangles.len()];
+        compute(positions, triangles, &vec![7; triangles.len()], &mut packed);
+        packed.into_iter().map(|c| c.map(unpack_normal)).collect()
+    }
+
+    #[test]
+    fn the_crease_angle_is_what_its_name_says() {
+        assert!((CREASE_DEGREES.to_radians().cos() - CREASE_COSINE).abs() < 1e-6);
+        // Two faces that meet at an edge along x, folded by an angle.
+        for (degrees, smooth) in [(29.0f32, true), (31.0, false)] {
+            let (s, c) = degrees.to_radians().sin_cos();
+            let positions = [Vec3::ZERO, Vec3::X, Vec3::new(0.5, -1.0, 0.0), Vec3::new(0.5, c, s)];
+            let second = Vec3::new(0.0, -s, c);
+            // Wound the other way round, the first face is never smooth with the second.
+            let against = normals_of(&positions, &[[0, 1, 2], [0, 1, 3]]);
+            assert!((against[0][0] - Vec3::NEG_Z).length() < 1e-3, "{degrees}: {}", against[0][0]);
+            let folded = normals_of(&positions, &[[0, 2, 1], [0, 1, 3]]);
+            let mean = (Vec3::Z + second).normalize();
+            let expected = if smooth { mean } else { Vec3::Z };
+            assert!((folded[0][0] - expected).length() < 1e-3, "{degrees}: {}", folded[0][0]);
+            assert!((folded[0][1] - Vec3::Z).length() < 1e-3, "a corner off the edge");
+        }
+    }
+
+    #[test]
+    fn a_cube_stays_sharp_and_its_diagonals_do_not_show() {
+        let positions: Vec<Vec3> =
+            (0..8).map(|i| Vec3::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2 & 1) as f32)).collect();
+        let top = [[4, 5, 7], [4, 7, 6]];
+        let front = [[0, 1, 5], [0, 5, 4]];
+        let triangles = [top[0], top[1], front[0], front[1]];
+        let normals = normals_of(&positions, &triangles);
+        for (corners, expected) in normals.iter().zip([Vec3::Z, Vec3::Z, Vec3::NEG_Y, Vec3::NEG_Y]) {
+            assert!(corners.iter().all(|n| (*n - expected).length() < 1e-4), "{corners:?}");
+        }
+    }
+
+    #[test]
+    fn a_sphere_gets_its_own_normals_and_a_wide_cone_its_tip_in_time() {
+        // Rings of a sphere around y.
+        let (rings, sectors) = (24u32, 48u32);
+        let mut positions = Vec::new();
+        for r in 0..=rings {
+            for s in 0..sectors {
+                let (theta, phi) = (r as f32 / rings as f32 * PI, s as f32 / sectors as f32 * TAU);
+                positions.push(Vec3::new(theta.sin() * phi.cos(), theta.cos(), -theta.sin() * phi.sin()));
+            }
+        }
+        let mut triangles = Vec::new();
+        for r in 1..rings - 1 {
+            for s in 0..sectors {
+                let at = |r: u32, s: u32| r * sectors + s % sectors;
+                triangles.push([at(r, s), at(r + 1, s), at(r + 1, s + 1)]);
+                triangles.push([at(r, s), at(r + 1, s + 1), at(r, s + 1)]);
+            }
+        }
+        for (triangle, normals) in triangles.iter().zip(normals_of(&positions, &triangles)) {
+            for (v, n) in triangle.iter().zip(normals) {
+                let p = positions[*v as usize];
+                // Rings next to the open poles have faces on one side only.
+                assert!(p.y.abs() > 0.95 || (n - p).length() < 0.02, "{p}: {n}");
+            }
+        }
+        // A flat cone of 60,000 sides: its tip points along the axis. Pair by pair this would take minutes.
+        let sides = 60_000u32;
+        let mut positions = vec![Vec3::new(0.0, 0.1, 0.0)];
+        positions.extend((0..sides).map(|i| {
+            let (s, c) = (i as f32 / sides as f32 * TAU).sin_cos();
+            Vec3::new(c, 0.0, -s)
+        }));
+        let triangles: Vec<[u32; 3]> = (0..sides).map(|i| [0, 1 + i, 1 + (i + 1) % sides]).collect();
+        let normals = normals_of(&positions, &triangles);
+        assert!(normals.iter().all(|n| (n[0] - Vec3::Y).length() < 0.02));
+    }
+
+    #[test]
+    fn angles_are_close_to_the_standard_library() {
+        for i in -1000..=1000 {
+            let x = i as f32 / 1000.0;
+            assert!((arc_cosine(x) - x.acos()).abs() < 1.0e-4, "{x}");
+        }
+    }
+
+    #[test]
+    fn corners_that_have_normals_keep_them() {
+        let mut packed = vec![[1, 2, 3]];
+        compute(&[Vec3::ZERO, Vec3::X, Vec3::Y], &[[0, 1, 2]], &[0b010], &mut packed);
+        assert_eq!((packed[0][0], packed[0][2]), (1, 3));
+        assert_eq!(unpack_normal(packed[0][1]), Vec3::Z);
+    }
+}

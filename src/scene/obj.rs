@@ -16,7 +16,7 @@ use std::collections::HashMap;
 use std::io::{self, BufRead, Read};
 use std::path::Path;
 
-use super::lines::{LogicalLines, keyword, name_text, words};
+use super::lines::{LogicalLines, keyword, name_text, without_comment, words};
 use super::locate;
 use crate::{Error, Result};
 
@@ -123,6 +123,8 @@ struct Feed<'a> {
     faces_in_group: u64,
     /// By group number: it has faces.
     group_has_faces: Vec<bool>,
+    /// By group number: it is in `reopened_groups`.
+    group_reopened: Vec<bool>,
     reopened_groups: Vec<String>,
     materials: Names,
     libraries: Vec<(String, usize)>,
@@ -152,6 +154,7 @@ impl<'a> Feed<'a> {
             group: 0,
             faces_in_group: 0,
             group_has_faces: Vec::new(),
+            group_reopened: Vec::new(),
             reopened_groups: Vec::new(),
             materials: Names::default(),
             libraries: Vec::new(),
@@ -168,6 +171,7 @@ impl<'a> Feed<'a> {
     fn step(&mut self) -> Result<Step> {
         let Some((number, line)) = self.lines.next_line()? else { return Ok(Step::End) };
         let (key, rest) = keyword(line);
+        let rest = if matches!(key, b"v" | b"vt" | b"vn" | b"f") { without_comment(rest) } else { rest };
         match key {
             b"v" => {
                 self.defined.positions += 1;
@@ -245,9 +249,10 @@ impl<'a> Feed<'a> {
         let (id, new) = self.groups.number(name, line);
         if new {
             self.group_has_faces.push(false);
+            self.group_reopened.push(false);
         } else if id != self.group && self.group_has_faces[id] {
             let name = &self.groups.names[id].0;
-            if !name.is_empty() && !self.reopened_groups.contains(name) {
+            if !name.is_empty() && !std::mem::replace(&mut self.group_reopened[id], true) {
                 self.reopened_groups.push(name.clone());
             }
         }
@@ -357,9 +362,6 @@ fn push_face(out: &mut Vec<u8>, rest: &[u8], defined: &Defined) -> std::result::
     out.push(b'f');
     let mut corners = 0;
     for word in words(rest) {
-        if word[0] == b'#' {
-            break;
-        }
         out.push(b' ');
         push_corner(out, word, defined)
             .map_err(|why| format!("corner `{}`: {why}", String::from_utf8_lossy(&word[..word.len().min(60)])))?;

@@ -101,15 +101,18 @@ impl Textures {
         };
         let open = || -> std::io::Result<_> {
             let mut reader = ImageReader::with_format(BufReader::new(File::open(path)?), format);
+            // Sizes are ours to check, with the numbers in the message.
             let mut limits = Limits::no_limits();
-            limits.max_image_width = Some(MAX_SIDE);
-            limits.max_image_height = Some(MAX_SIDE);
             limits.max_alloc = Some(DECODER_BYTES);
             reader.limits(limits);
             Ok(reader)
         };
-        let broken = |e: image::ImageError| fail(format!("picture is damaged or cut short ({e}); export it again"));
-        // The decoder refuses absurd sizes without naming them.
+        let broken = |e: image::ImageError| {
+            // Some decoders' messages have line ends.
+            let why = e.to_string().split_whitespace().collect::<Vec<_>>().join(" ");
+            fail(format!("picture is damaged or cut short ({why}); export it again"))
+        };
+        // The PNG decoder refuses absurd sizes without naming them.
         let size = match (format, png_size(head)) {
             (ImageFormat::Png, Some(size)) => size,
             _ => open().map_err(io)?.into_dimensions().map_err(broken)?,

@@ -8,8 +8,8 @@
 
 use glam::{DVec2, DVec3, Vec3};
 
-/// Most corner tests spent on one polygon (about a second); beyond that it becomes a fan.
-const MAX_TESTS: u64 = 400_000_000;
+/// Most corner tests spent on all polygons of a scene (some seconds); what is left then becomes fans.
+pub(super) const MAX_TESTS: u64 = 1_000_000_000;
 
 /// How a polygon was split.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -23,7 +23,8 @@ pub(super) enum Split {
 }
 
 /// Splits the polygon with these corners; appends triangles of corner numbers to `out`, wound as the polygon is.
-pub(super) fn split(corners: &[Vec3], out: &mut Vec<[u32; 3]>) -> Split {
+/// `tests_left`: how many corner tests may still be spent, at first [`MAX_TESTS`].
+pub(super) fn split(corners: &[Vec3], tests_left: &mut u64, out: &mut Vec<[u32; 3]>) -> Split {
     let n = corners.len();
     if n < 3 {
         return Split::Degenerate;
@@ -56,7 +57,16 @@ pub(super) fn split(corners: &[Vec3], out: &mut Vec<[u32; 3]>) -> Split {
         out.extend((1..ring.len() - 1).map(|i| [ring[0], ring[i], ring[i + 1]]));
         return Split::Exact;
     }
-    clip_ears(&ring, &flat, out)
+    let first = out.len();
+    let outcome = clip_ears(&ring, &flat, tests_left, out);
+    // Triangles that cover a polygon without overlap have its area; those of one that crosses itself have more.
+    let flat_area = |corners: &[u32]| {
+        let at = |i: usize| flat[corners[i % corners.len()] as usize];
+        (1..corners.len() - 1).map(|i| area2(at(0), at(i), at(i + 1))).sum::<f64>().abs()
+    };
+    let covered: f64 = out[first..].iter().map(|t| flat_area(t)).sum();
+    let whole = flat_area(&ring);
+    if (covered - whole).abs() > 1.0e-6 * covered { Split::Approximate } else { outcome }
 }
 
 /// Projects along the axis that `normal` is nearest to, keeping the winding counter-clockwise.
@@ -96,7 +106,7 @@ struct Clipper<'a> {
     clipped: Vec<bool>,
     /// Places that may be reflex (or straight); those that are not any more are skipped.
     reflex: Vec<u32>,
-    tests: u64,
+    tests_left: &'a mut u64,
 }
 
 impl Clipper<'_> {
@@ -134,7 +144,7 @@ impl Clipper<'_> {
             let (u, v, w) = (area2(a, b, q), area2(b, c, q), area2(c, a, q));
             if lenient { u > 0.0 && v > 0.0 && w > 0.0 } else { u >= 0.0 && v >= 0.0 && w >= 0.0 }
         });
-        self.tests += tests;
+        *self.tests_left = self.tests_left.saturating_sub(tests);
         !blocked
     }
 
@@ -148,7 +158,7 @@ impl Clipper<'_> {
     }
 }
 
-fn clip_ears(ring: &[u32], flat: &[DVec2], out: &mut Vec<[u32; 3]>) -> Split {
+fn clip_ears(ring: &[u32], flat: &[DVec2], tests_left: &mut u64, out: &mut Vec<[u32; 3]>) -> Split {
     let count = ring.len() as u32;
     let mut clipper = Clipper {
         flat,
@@ -157,7 +167,7 @@ fn clip_ears(ring: &[u32], flat: &[DVec2], out: &mut Vec<[u32; 3]>) -> Split {
         previous: (0..count).map(|i| (i + count - 1) % count).collect(),
         clipped: vec![false; ring.len()],
         reflex: Vec::new(),
-        tests: 0,
+        tests_left,
     };
     clipper.reflex = (0..count).filter(|&i| clipper.turn(i) <= 0.0).collect();
     let mut left = count;
@@ -175,7 +185,7 @@ fn clip_ears(ring: &[u32], flat: &[DVec2], out: &mut Vec<[u32; 3]>) -> Split {
         candidates.reverse();
         let before = left;
         while let Some(place) = candidates.pop() {
-            if clipper.tests > MAX_TESTS {
+            if *clipper.tests_left == 0 {
                 outcome = Split::Approximate;
                 break 'rounds;
             }
@@ -220,4 +230,134 @@ fn clip_ears(ring: &[u32], flat: &[DVec2], out: &mut Vec<[u32; 3]>) -> Split {
         }
     }
     outcome
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn points(flat: &[(f32, f32)]) -> Vec<Vec3> {
+        flat.iter().map(|&(x, y)| Vec3::new(x, y, 0.0)).collect()
+    }
+
+    fn split_all(corners: &[Vec3], out: &mut Vec<[u32; 3]>) -> Split {
+        split(corners, &mut { MAX_TESTS }, out)
+    }
+
+    /// Signed area above the xy plane.
+    fn signed_area(corners: &[Vec3], triangles: &[[u32; 3]]) -> f64 {
+        let area = |t: &[u32; 3]| {
+            let [a, b, c] = t.map(|i| corners[i as usize].as_dvec3().truncate());
+            area2(a, b, c) * 0.5
+        };
+        triangles.iter().map(area).sum()
+    }
+
+    /// Splits, and checks that no triangle is turned over and that all have `area` together.
+    fn split_well(corners: &[Vec3], area: f64) -> Vec<[u32; 3]> {
+        let mut out = Vec::new();
+        assert_eq!(split_all(corners, &mut out), Split::Exact);
+        for t in &out {
+            assert!(signed_area(corners, &[*t]) * area.signum() >= 0.0, "triangle {t:?} is turned over");
+        }
+        let sum = signed_area(corners, &out);
+        assert!((sum - area).abs() < 1e-5 * area.abs(), "area {sum} instead of {area}");
+        out
+    }
+
+    #[test]
+    fn convex_polygons_become_fans() {
+        let square = points(&[(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)]);
+        assert_eq!(split_well(&square, 1.0), [[0, 1, 2], [0, 2, 3]]);
+        let clockwise: Vec<Vec3> = square.iter().rev().copied().collect();
+        assert_eq!(split_well(&clockwise, -1.0).len(), 2);
+    }
+
+    #[test]
+    fn each_axis_keeps_the_winding() {
+        let flat = points(&[(0.0, 0.0), (2.0, -1.0), (1.0, 0.0), (2.0, 1.0)]);
+        for turn in 0..3 {
+            for mirrored in [1.0, -1.0] {
+                let corners: Vec<Vec3> = flat
+                    .iter()
+                    .map(|p| {
+                        let p = [p.x, p.y * mirrored, 0.25 * p.x];
+                        Vec3::new(p[turn], p[(turn + 1) % 3], p[(turn + 2) % 3])
+                    })
+                    .collect();
+                let mut out = Vec::new();
+                assert_eq!(split_all(&corners, &mut out), Split::Exact);
+                let whole: Vec3 = (0..4).map(|i| corners[i].cross(corners[(i + 1) % 4])).sum();
+                let parts: Vec<Vec3> =
+                    out.iter().map(|t| t.map(|i| corners[i as usize])).map(|[a, b, c]| (b - a).cross(c - a)).collect();
+                assert!(parts.iter().all(|n| n.dot(whole) > 0.0));
+                assert!((parts.iter().copied().sum::<Vec3>() - whole).length() < 1e-6);
+            }
+        }
+    }
+
+    #[test]
+    fn a_spiral_a_bridge_to_a_hole_and_straight_corners_are_covered() {
+        // A band that winds inwards three times.
+        let mut spiral = Vec::new();
+        let arm = |turns: f32, r: f32| (turns.cos() * r, turns.sin() * r);
+        let steps = 300;
+        for i in 0..=steps {
+            let a = i as f32 / steps as f32 * 18.0;
+            spiral.push(arm(a, 10.0 - a * 0.5));
+        }
+        for i in (0..=steps).rev() {
+            let a = i as f32 / steps as f32 * 18.0;
+            spiral.push(arm(a, 9.0 - a * 0.5));
+        }
+        let spiral = points(&spiral);
+        let n = spiral.len();
+        let shoelace: f64 =
+            (0..n).map(|i| spiral[i].as_dvec3().cross(spiral[(i + 1) % n].as_dvec3()).z).sum::<f64>() * 0.5;
+        assert_eq!(split_well(&spiral, shoelace).len(), n - 2);
+        // A square with a square hole, joined by a bridge that is walked twice.
+        let frame = points(&[
+            (0.0, 0.0),
+            (4.0, 0.0),
+            (4.0, 4.0),
+            (0.0, 4.0),
+            (0.0, 0.0),
+            (1.0, 1.0),
+            (1.0, 3.0),
+            (3.0, 3.0),
+            (3.0, 1.0),
+            (1.0, 1.0),
+        ]);
+        split_well(&frame, 12.0);
+        // Corners on edges.
+        let notched = points(&[(0.0, 0.0), (1.0, 0.0), (2.0, 0.0), (2.0, 2.0), (1.0, 2.0), (1.0, 1.0), (0.0, 1.0)]);
+        split_well(&notched, 3.0);
+    }
+
+    #[test]
+    fn what_is_no_simple_polygon_is_told() {
+        let mut out = Vec::new();
+        assert_eq!(split_all(&points(&[(0.0, 0.0), (1.0, 1.0), (2.0, 2.0), (3.0, 3.0)]), &mut out), Split::Degenerate);
+        assert_eq!(split_all(&points(&[(0.0, 0.0), (1.0, 0.0), (0.0, 0.0), (1.0, 0.0)]), &mut out), Split::Degenerate);
+        assert!(out.is_empty());
+        let bow_tie = points(&[(0.0, 0.0), (2.0, 2.0), (2.0, 0.0), (0.0, 1.0)]);
+        assert_eq!(split_all(&bow_tie, &mut out), Split::Approximate);
+        let star: Vec<(f32, f32)> = (0..5).map(|i| (i as f32 * 2.513_274).sin_cos()).collect();
+        assert_eq!(split_all(&points(&star), &mut out), Split::Approximate);
+    }
+
+    #[test]
+    fn a_comb_of_many_thousand_corners_takes_no_time_to_speak_of() {
+        let mut comb: Vec<(f32, f32)> = (0..20_000).map(|i| (i as f32, (i % 2) as f32)).collect();
+        comb.extend([(19_999.0, -1.0), (0.0, -1.0)]);
+        split_well(&points(&comb), -29_998.5);
+    }
+
+    #[test]
+    fn without_time_left_a_concave_polygon_becomes_a_fan() {
+        let arrow = points(&[(0.0, 0.0), (2.0, -1.0), (1.0, 0.0), (2.0, 1.0)]);
+        let mut out = Vec::new();
+        assert_eq!(split(&arrow, &mut 0, &mut out), Split::Approximate);
+        assert_eq!(out.len(), 2);
+    }
 }

@@ -248,11 +248,11 @@ fn camera(at: &At, value: &Value, warnings: &mut Vec<String>) -> Result<Option<C
 fn check_camera(camera: &Camera) -> std::result::Result<(), (&'static str, String)> {
     let direction = camera.look_at - camera.eye;
     let scale = direction.abs().max_element();
-    if scale == 0.0 || !(direction.length_squared() >= f32::MIN_POSITIVE) {
+    if direction.length_squared() < f32::MIN_POSITIVE {
         return Err(("look_at", format!("is the same point as `eye` {}: no direction to look in", camera.eye)));
     }
     let up_scale = camera.up.abs().max_element();
-    if up_scale == 0.0 || !(camera.up.length_squared() >= f32::MIN_POSITIVE) {
+    if camera.up.length_squared() < f32::MIN_POSITIVE {
         return Err(("up", format!("{} has no length", camera.up)));
     }
     let sine = (direction / scale).normalize().cross((camera.up / up_scale).normalize()).length();

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! `rarefy compare`.
+
+use std::path::Path;
+
+use rarefy::compare::{Comparison, compare};
+use rarefy::layers::{self, Layer};
+use rarefy::metrics::{CUSTOMARY_GAIN, Rgb8, difference_picture};
+use rarefy::options::{Mode, RenderOptions};
+use rarefy::picture::write_png;
+use rarefy::renderer::Renderer;
+use rarefy::stage::Stage;
+use rarefy::{Error, Result, report};
+
+use super::args::CompareArgs;
+use super::output::{say, write_json};
+use super::progress::{Progress, make_renderer};
+
+/// Draws both ways in turn; prints the table, writes pictures and JSON.
+pub fn run(args: &CompareArgs) -> Result<()> {
+    let options = args.draw.render_options(Mode::Adaptive)?;
+    if args.frames == 0 {
+        return Err(Error::option("--frames", "0 frames cannot be timed; at least 1 is needed"));
+    }
+    if let Some(folder) = &args.output {
+        std::fs::create_dir_all(folder).map_err(|e| Error::io(folder, e))?;
+    }
+    let (mut renderer, load_ms) = make_renderer(&args.draw.scene, &args.draw.renderer_options()?)?;
+    let progress = Progress::new();
+    let comparison = compare(&mut renderer, &options, args.frames, &|share| progress.update("frames", share));
+    progress.clear();
+    let comparison = comparison?;
+    let json = args.draw.json.as_deref();
+    for line in table(&mut renderer, &options, &comparison) {
+        say(json, &line);
+    }
+    if let Some(folder) = &args.output {
+        for line in write_pictures(folder, &mut renderer, &comparison)? {
+            say(json, &line);
+        }
+    }
+    match json {
+        Some(path) => write_json(path, &report::compare_json(&mut renderer, &options, &comparison, load_ms)),
+        None => Ok(()),
+    }
+}
+
+fn table(renderer: &mut Renderer, options: &RenderOptions, c: &Comparison) -> Vec<String> {
+    let info = renderer.info();
+    let decibel = |v: Option<f64>| v.map_or("equal".to_owned(), |db| format!("{db:.2} dB"));
+    let all = f64::from(options.width) * f64::from(options.height);
+    let p = &c.adaptive.pixels;
+    let mut lines = vec![
+        format!(
+            "{}: {} triangles, {}x{}, blocks of {}, on {}",
+            renderer.name(),
+            renderer.triangle_count(),
+            options.width,
+            options.height,
+            options.block,
+            info.name
+        ),
+        format!("  frame      full {:.1} ms, adaptive {:.1} ms: {:.2} times as fast", c.full.frame_ms, c.adaptive.frame_ms, c.speedup),
+        format!("  work       {:.2} times less (traversal steps and triangle tests)", c.work_speedup()),
+        format!(
+            "  traced     {:.2} % of the pixels, {:.2} % with correction (base {:.2} %, failed checks {:.2} %)",
+            100.0 * c.adaptive.ray_traced_ratio(),
+            100.0 * c.adaptive.ray_traced_ratio_with_correction(),
+            100.0 * p.base as f64 / all,
+            100.0 * p.traced as f64 / all
+        ),
+        format!(
+            "  quality    PSNR {}, SSIM {:.5}, FLIP mean {:.5}, 99th percentile {:.4}",
+            decibel(c.quality.psnr_db),
+            c.quality.ssim,
+            c.quality.flip_mean,
+            c.quality.flip_p99
+        ),
+        format!(
+            "  wrong      object {} pixels (largest cluster {}), shadow {} pixels",
+            c.wrong_object.count, c.wrong_object.largest_cluster, c.wrong_shadow.count
+        ),
+        format!(
+            "  packed     a packed ray costs {} average rays; correction {:.1} % of the work",
+            c.packed_ray_work_ratio().map_or("-".to_owned(), |r| format!("{r:.2}")),
+            100.0 * c.correction_work_ratio()
+        ),
+    ];
+    let stages = Stage::ALL.map(|s| format!("{} {:.1}", s.name(), c.adaptive.stages_ms[s as usize])).join("  ");
+    lines.push(format!("  stages/ms  {stages}  other {:.1}", c.adaptive.other_ms()));
+    lines
+}
+
+fn write_pictures(folder: &Path, renderer: &mut Renderer, c: &Comparison) -> Result<Vec<String>> {
+    let frame = &c.adaptive_frame;
+    let (width, height) = (frame.width, frame.height);
+    let reference = Rgb8::new(width, height, &c.full_picture)?;
+    let test = Rgb8::new(width, height, &frame.pixels)?;
+    let class = layers::draw(Layer::Class, renderer, frame)?;
+    let fail_mask = layers::draw(Layer::FailMask, renderer, frame)?;
+    let pictures = [
+        ("full.png", c.full_picture.clone()),
+        ("adaptive.png", frame.pixels.clone()),
+        ("difference.png", difference_picture(reference, test, CUSTOMARY_GAIN)?),
+        ("class.png", class),
+        ("fail-mask.png", fail_mask),
+    ];
+    let mut lines = Vec::new();
+    for (name, pixels) in pictures {
+        let path = folder.join(name);
+        write_png(&path, width, height, &pixels)?;
+        lines.push(path.display().to_string());
+    }
+    Ok(lines)
+}

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! `rarefy diff`.
+
+use rarefy::metrics::{CUSTOMARY_GAIN, Rgb8, compare, difference_picture};
+use rarefy::picture::{read_rgb8, write_png};
+use rarefy::{Error, Result};
+use serde_json::json;
+
+use super::args::DiffArgs;
+use super::output::{check_writable, say, write_json};
+
+/// Measures two pictures; writes the difference and the figures.
+pub fn run(args: &DiffArgs) -> Result<()> {
+    if let Some(path) = &args.output {
+        check_writable(path)?;
+    }
+    let (width, height, reference) = read_rgb8(&args.reference)?;
+    let (test_width, test_height, test) = read_rgb8(&args.test)?;
+    let reference = Rgb8::new(width, height, &reference)?;
+    let test = Rgb8::new(test_width, test_height, &test)?;
+    let quality = compare(reference, test)?;
+    if let Some(path) = &args.output {
+        write_png(path, width, height, &difference_picture(reference, test, CUSTOMARY_GAIN)?)?;
+    }
+    let json = args.json.as_deref();
+    let psnr = quality.psnr_db.map_or("equal pictures".to_owned(), |db| format!("{db:.2} dB"));
+    say(
+        json,
+        &format!(
+            "PSNR {psnr}, SSIM {:.5}, FLIP mean {:.5}, 99th percentile {:.4}",
+            quality.ssim, quality.flip_mean, quality.flip_p99
+        ),
+    );
+    match json {
+        Some(path) => {
+            let mut value = serde_json::to_value(quality).map_err(|e| Error::option("--json", e.to_string()))?;
+            if let Some(object) = value.as_object_mut() {
+                // There is no mask of interpolated pixels for two files.
+                object.remove("psnr_interpolated_db");
+                object.insert("width".into(), json!(width));
+                object.insert("height".into(), json!(height));
+            }
+            write_json(path, &value)
+        }
+        None => Ok(()),
+    }
+}

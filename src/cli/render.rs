@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! `rarefy render`.
+
+use std::path::PathBuf;
+
+use rarefy::layers::{self, Layer};
+use rarefy::options::Mode;
+use rarefy::picture::write_png;
+use rarefy::renderer::Keep;
+use rarefy::{Error, Result, report};
+
+use super::args::{ModeArg, RenderArgs};
+use super::output::{check_writable, say, write_json};
+use super::progress::make_renderer;
+
+/// Draws one frame; writes the picture, the layers and the statistics.
+pub fn run(args: &RenderArgs) -> Result<()> {
+    let mode = match args.mode {
+        ModeArg::Full => Mode::Full,
+        ModeArg::Adaptive => Mode::Adaptive,
+    };
+    let options = args.draw.render_options(mode)?;
+    let layers = args.layer.iter().map(|text| parse_layer(text)).collect::<Result<Vec<_>>>()?;
+    let mut keep = Keep::default();
+    for (layer, path) in &layers {
+        if mode == Mode::Full && layer.is_adaptive_only() {
+            return Err(Error::option("--layer", "full tracing has no such layer; use --mode adaptive"));
+        }
+        keep.attributes |= layer.needs().attributes;
+        keep.counters |= layer.needs().counters;
+        check_writable(path)?;
+    }
+    check_writable(&args.output)?;
+
+    let (mut renderer, load_ms) = make_renderer(&args.draw.scene, &args.draw.renderer_options()?)?;
+    let frame = renderer.render(&options, keep)?;
+    write_png(&args.output, frame.width, frame.height, &frame.pixels)?;
+    for (layer, path) in &layers {
+        write_png(path, frame.width, frame.height, &layers::draw(*layer, &mut renderer, &frame)?)?;
+    }
+    let json = args.draw.json.as_deref();
+    let info = renderer.info();
+    say(
+        json,
+        &format!(
+            "{}: {}x{} on {} in {:.0} ms, {:.1} % of the pixels traced",
+            args.output.display(),
+            frame.width,
+            frame.height,
+            info.name,
+            frame.stats.frame_ms,
+            100.0 * frame.stats.ray_traced_ratio_with_correction()
+        ),
+    );
+    if frame.stats.fell_back {
+        say(json, "traced in full: the method did not pay in the frames before");
+    }
+    match json {
+        Some(path) => write_json(path, &report::render_json(&mut renderer, &options, &frame, load_ms)),
+        None => Ok(()),
+    }
+}
+
+fn parse_layer(text: &str) -> Result<(Layer, PathBuf)> {
+    let (name, path) = text
+        .split_once('=')
+        .filter(|(_, path)| !path.is_empty())
+        .ok_or_else(|| Error::option("--layer", format!("`{text}` is not NAME=FILE.png")))?;
+    Ok((layers::parse(name)?, PathBuf::from(path)))
+}

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! `rarefy selftest`.
+
+use rarefy::renderer::RendererOptions;
+use rarefy::stage::Stage;
+use rarefy::{Error, Result, selftest};
+
+use super::args::{SelftestArgs, profile};
+
+/// Prints every check; true if all passed.
+pub fn run(args: &SelftestArgs) -> Result<bool> {
+    let mutation = match &args.break_stage {
+        None => None,
+        Some(name) => {
+            let stage = Stage::ALL.into_iter().find(|s| s.name() == name).ok_or_else(|| {
+                let known = Stage::ALL.map(Stage::name).join(", ");
+                Error::option("--break-stage", format!("there is no stage `{name}`; the stages are {known}"))
+            })?;
+            Some(selftest::breaking_mutation(stage))
+        }
+    };
+    let options = RendererOptions {
+        device: args.device,
+        profile: profile(&args.profile)?,
+        mutation,
+        ..RendererOptions::default()
+    };
+    let result = selftest::run(&options)?;
+    println!("{}", result.device);
+    for check in &result.checks {
+        println!("  {:5} {:15} {}", if check.passed { "ok" } else { "WRONG" }, check.name, check.detail);
+    }
+    if let Err(error) = result.require() {
+        eprintln!("rarefy: {error}");
+    }
+    Ok(result.passed())
+}
