@@ -27,8 +27,8 @@ pub fn add(model: &mut Model, p: &Parameters) {
     model.add("beams", "walnut", beams.with_texture_scale(Vec2::new(0.6, 1.2)));
     door(model, r.front);
     let (x, z) = (r.left - 6.0, 0.5 * (w.near + w.far));
-    let street = [at(x, -1.2, z + 4.0), at(x, -1.2, z - 12.0), at(x, 6.3, z - 12.0), at(x, 6.3, z + 4.0)];
-    model.add("street", "street", Mesh::quad(street, one));
+    let street = Mesh::sheet(4, 2, |u, v| at(x, -1.2 + 7.5 * v, z + 4.0 - 16.0 * u));
+    model.add("street", "street", street);
 }
 
 /// The same mesh with its texture laid diagonally in plan.

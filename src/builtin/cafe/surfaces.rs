@@ -177,7 +177,7 @@ fn leaf(size: u32) -> [Canvas; 2] {
 
 const CHALK: Colour = [0.93, 0.92, 0.86];
 
-/// The menu on the blackboard: half as wide again as it is high would waste texels, so it is square.
+/// The menu on the blackboard.
 fn menu(size: u32, seed: u32) -> Canvas {
     let mut c = Canvas::new(size, size, |u, v| {
         let wiped = clouds(u * 0.5, v, 4, seed + 12);
@@ -201,7 +201,7 @@ fn menu(size: u32, seed: u32) -> Canvas {
     let items =
         [("ESPRESSO", "2.20"), ("CAPPUCCINO", "3.10"), ("TEA", "2.50"), ("CAKE", "3.80"), ("CROISSANT", "2.00")];
     for (i, (what, price)) in items.into_iter().enumerate() {
-        let y = 0.42 + 0.095 * i as f32;
+        let y = 0.40 + 0.089 * i as f32;
         let h = 0.060;
         let end = c.text(what, (0.09, y), h, 0.0105, CHALK, 0.35);
         let start = 0.915 - Canvas::measure(price, h);
