@@ -173,7 +173,7 @@ fn every_platform_makes_the_same_bytes() {
 }
 
 const FINGERPRINTS: [&str; 5] = [
-    "cafe 462458fbfa9adb45",
+    "cafe c6cf9905b8189a25",
     "wall d0a6efcf7680eabe",
     "spheres 41b661c0471587dc",
     "rods 596a3956f97fde18",

@@ -78,3 +78,24 @@ fn texture_of(model: &Model, name: &str, is_mask: bool) -> Result<Texture> {
         texels: picture.rgb.chunks_exact(3).map(texel).collect(),
     })
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::builtin::generate;
+
+    #[test]
+    fn a_view_without_camera_or_a_model_with_unknown_names_is_refused() {
+        let mut model = generate("spheres").unwrap();
+        assert!(scene_of(&model).is_ok());
+        model.groups[0].material = "none".into();
+        assert!(scene_of(&model).unwrap_err().to_string().contains("unknown material `none`"));
+        let mut model = generate("spheres").unwrap();
+        model.textures.clear();
+        assert!(scene_of(&model).unwrap_err().to_string().contains("unknown picture `checks.png`"));
+        let mut model = generate("wall").unwrap();
+        model.view = "{\"lights\": [], \"extent\": 1}";
+        assert_eq!(scene_of(&model).unwrap_err().to_string(), "scenes/wall/view.json: `camera` is missing");
+    }
+}

@@ -66,7 +66,7 @@ pub fn write(name: &str, folder: &Path) -> Result<()> {
     export::write_model(&generate(name)?, folder)
 }
 
-/// Makes a built-in scene ready to be drawn, without files: the same scene as loading what [`write`] wrote.
+/// Makes a built-in scene ready to be drawn, without files: the same scene as loading what [`write()`] wrote.
 ///
 /// # Errors
 /// If there is no scene of that name; the message lists those that exist.

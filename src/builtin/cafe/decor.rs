@@ -78,7 +78,7 @@ fn plant(model: &mut Model, place: Vec3, p: &Parameters) {
     let pot =
         [(0.0, 0.0), (0.13, 0.0), (0.18, 0.30), (0.20, 0.30), (0.20, 0.35), (0.175, 0.35), (0.165, 0.31), (0.0, 0.30)];
     model.add("plant-pot", "terracotta", Mesh::lathe(&pot, 18).moved(place));
-    let soil = Mesh::lathe(&[(0.166, 0.318), (0.0, 0.325)], 16);
+    let soil = Mesh::lathe(&[(0.166, 0.316), (0.0, 0.325)], 16);
     model.add("plant-soil", "soil", soil.moved(place));
     let mut random = Random::new(p.seed.wrapping_add(77));
     let mut stems = Mesh::default();

@@ -83,7 +83,7 @@ fn chair_frame(c: &Chair) -> Mesh {
     // Rear legs and back are one bent piece.
     let half = [
         at(0.80 * w, 0.0, -1.22 * w),
-        at(0.76 * w, 0.45 * s, -1.0 * w),
+        at(0.76 * w, 0.45 * s, -w),
         at(0.74 * w, s, -0.86 * w),
         at(0.80 * w, s + 0.40 * rise, -1.02 * w),
         at(0.78 * w, s + 0.74 * rise, -1.20 * w),
