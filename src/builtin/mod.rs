@@ -82,3 +82,11 @@ fn check(scene: &str, key: &str, value: f32, range: std::ops::RangeInclusive<f32
     let message = format!("`{key}` is {value}; it must lie between {} and {}", range.start(), range.end());
     Err(Error::scene(format!("scenes/{scene}/parameters.json"), message))
 }
+
+/// The built-in scene `name`, ready to draw.
+pub fn to_scene(name: &str) -> Result<crate::Scene> {
+    let d = tempfile::tempdir().map_err(|e| Error::io("tmp", e))?;
+    let p = d.path().join(name);
+    write(name, &p)?;
+    crate::scene::load(&p, &|_, _| ())
+}
