@@ -2,9 +2,10 @@
 //! Kd-tree build times: `cargo bench -p rarefy-host-tests --bench kdtree -- [RUNS] [SCENE ...]`.
 //!
 //! Prints one line a scene: build time in ms (median of RUNS, 5 by default) on 1 and 2 threads, computing ms per
-//! 100,000 triangles on one core, and what the tree is like. Uses a generated scene and, if they are there, those of `../shared/scenes`
-//! (or of the folder that the variable SCENES names).
-//! Memory is the peak of what the process held at once during the build, without the scene (where the system tells).
+//! 100,000 triangles on one core, and what the tree is like. Uses a generated scene and, if they are there, those of
+//! `../shared/scenes` (or of the folder that the variable SCENES names). INTERSECTION_COST and EMPTY_BONUS set the
+//! builder's parameters. The last column is the peak of MB that the process held at once during a build on 2 threads,
+//! without the scene (where the system tells).
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The door to OpenCL on a real implementation: launches, slices, limits, caches, errors.
+//!
+//! Oclgrind runs these with `--test-threads 1` only: it mixes up contexts of several threads.
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use std::path::Path;
@@ -148,9 +150,9 @@ fn slices_follow_the_profile() {
     if no_opencl() {
         return;
     }
-    // A million work-items start with small slices under a profile, with one without.
+    // A stage starts with small slices under a profile.
     let phone = door_with(&OpenOptions { profile: Some(Profile::named("adreno-420").unwrap()), ..options() });
-    assert!(counted(&count(&phone, 1024, 1024, Some([8, 8]))));
+    assert!(counted(&count(&phone, 400, 200, Some([8, 8]))));
     assert!(phone.enqueues() > 1);
     assert_eq!(phone.profile_name(), Some("adreno-420"));
     assert_eq!(phone.choices().work_group("step1"), [8, 8]);
@@ -269,8 +271,8 @@ fn launches_are_timed_per_label() {
         return;
     }
     let door = door();
-    count(&door, 512, 512, Some([8, 8]));
-    count(&door, 512, 512, Some([8, 8]));
+    count(&door, 128, 128, Some([8, 8]));
+    count(&door, 128, 128, Some([8, 8]));
     launch_sum(&door, 64).unwrap();
     let timings = door.take_timings().unwrap();
     let labels: Vec<_> = timings.iter().map(|(label, _)| *label).collect();
@@ -549,6 +551,10 @@ fn threads_share_a_door() {
         return;
     }
     let door = door();
+    if door.info().is_simulator() {
+        println!("skipped: Oclgrind is not made for threads");
+        return;
+    }
     std::thread::scope(|scope| {
         let threads: Vec<_> =
             (0..4).map(|_| scope.spawn(|| (0..5).all(|_| counted(&count(&door, 123, 45, Some([8, 8])))))).collect();

@@ -2,7 +2,11 @@
 //! What part of a triangle lies in a cell: exact clipping, and the widening that keeps it conservative.
 //!
 //! Traversal computes hit points in 32-bit floats, so a hit may lie a few units in the last place outside the triangle.
-//! A triangle therefore counts as lying in every cell that comes within [`cell_epsilon`] of it. The polygon is clipped
+//! A triangle therefore counts as lying in every cell that comes within [`cell_epsilon`] of it. A wall in a plane becomes
+//! a slab with a candidate plane on either side, so it need not be duplicated; triangles that meet in a plane of constant
+//! x, y or z reach over it by epsilon, which costs 0 to 5 % of expected cost and 10 to 80 % more leaf entries than a tree
+//! without epsilon (measured on six scenes), whatever epsilon is.
+//! The polygon is clipped
 //! (Sutherland and Hodgman, "Reentrant polygon clipping", CACM 1974) in 64-bit floats against the box widened by
 //! epsilon, and its bounds are widened by epsilon again; as each cut starts from the triangle's own corners, nothing
 //! adds up from level to level. The clipped bounds are what "perfect splits" means in Wald and Havran, "On building fast
@@ -177,4 +181,63 @@ pub(super) fn split_primitive(
         fitted(lower, polygon.bounds_of_part(axis, plane + epsilon, 1.0)),
         fitted(upper, polygon.bounds_of_part(axis, plane - epsilon, -1.0)),
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::Vec3;
+
+    const EPSILON: f32 = 1.0e-6;
+
+    fn parts(corners: [Vec3; 3], axis: usize, position: f32) -> (Option<Primitive>, Option<Primitive>) {
+        let exact = corners.map(|p| p.as_dvec3().to_array());
+        split_primitive(&whole(7, corners, EPSILON), &exact, axis, position, EPSILON)
+    }
+
+    fn near(p: Option<Primitive>, lo: [f32; 3], hi: [f32; 3]) -> bool {
+        let close = |a: [f32; 3], b: [f32; 3]| (0..3).all(|i| (a[i] - b[i]).abs() < 4.0 * EPSILON);
+        p.is_some_and(|p| p.id == 7 && close(p.lo, lo) && close(p.hi, hi))
+    }
+
+    #[test]
+    fn parts_are_bounded_tightly() {
+        let corners = [Vec3::ZERO, Vec3::new(4.0, 0.0, 0.0), Vec3::new(4.0, 2.0, 1.0)];
+        let (lower, upper) = parts(corners, 0, 1.0);
+        assert!(near(lower, [0.0; 3], [1.0, 0.5, 0.25]), "{lower:?}");
+        assert!(near(upper, [1.0, 0.0, 0.0], [4.0, 2.0, 1.0]), "{upper:?}");
+        let (lower, upper) = parts(corners, 1, 1.0);
+        assert!(near(lower, [0.0; 3], [4.0, 1.0, 0.5]), "{lower:?}");
+        assert!(near(upper, [2.0, 1.0, 0.5], [4.0, 2.0, 1.0]), "{upper:?}");
+    }
+
+    #[test]
+    fn cutting_a_part_again_starts_from_the_triangle() {
+        let corners = [Vec3::ZERO, Vec3::new(4.0, 0.0, 0.0), Vec3::new(4.0, 2.0, 1.0)];
+        let exact = corners.map(|p| p.as_dvec3().to_array());
+        let (_, upper) = parts(corners, 1, 1.0);
+        let (lower, upper) = upper.map_or((None, None), |p| split_primitive(&p, &exact, 0, 3.0, EPSILON));
+        assert!(near(lower, [2.0, 1.0, 0.5], [3.0, 1.5, 0.75]), "{lower:?}");
+        assert!(near(upper, [3.0, 1.0, 0.5], [4.0, 2.0, 1.0]), "{upper:?}");
+    }
+
+    #[test]
+    fn a_side_that_only_the_bounds_reach_is_empty() {
+        // The part of the box near the corner (0, 2) holds nothing of the triangle.
+        let corners = [Vec3::ZERO, Vec3::new(4.0, 0.0, 0.0), Vec3::new(4.0, 2.0, 0.0)];
+        let exact = corners.map(|p| p.as_dvec3().to_array());
+        let corner_box = Primitive { lo: [0.0, 0.9, -1.0], id: 7, hi: [2.5, 2.0, 1.0], unused: 0 };
+        let (lower, upper) = split_primitive(&corner_box, &exact, 0, 1.5, EPSILON);
+        assert_eq!(lower, None);
+        assert!(near(upper, [1.8, 0.9, 0.0], [2.5, 1.25, 0.0]), "{upper:?}");
+    }
+
+    #[test]
+    fn touching_within_epsilon_counts_on_both_sides() {
+        let corners = [Vec3::ZERO, Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.0, 1.0, 0.0)];
+        let (lower, upper) = parts(corners, 0, 0.5 * EPSILON);
+        assert!(lower.is_some() && upper.is_some());
+        let (lower, upper) = parts(corners, 2, 0.5 * EPSILON);
+        assert!(lower.is_some() && upper.is_some(), "a flat triangle within epsilon of the plane");
+    }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Whether a tree is what the kernels rely on: for tests, after every build.
+//! Whether a tree is what traversal relies on: for tests, after every build.
 //!
 //! Nothing of the builder is used but its epsilon: whether a triangle meets a cell is found by separating axes
 //! (Akenine-Moller, "Fast 3D triangle-box overlap testing", 2001), not by clipping.
@@ -29,7 +29,7 @@ impl KdTree {
             Err(e) => panic!("the triangles are invalid: {e}"),
         };
         assert!(self.nodes.len() >= 2, "there are {} nodes, fewer than the root and the unused one", self.nodes.len());
-        assert!(self.nodes.len() % 2 == 0, "there are {} nodes, an odd number", self.nodes.len());
+        assert!(self.nodes.len().is_multiple_of(2), "there are {} nodes, an odd number", self.nodes.len());
         for (i, triangle) in triangles.iter().enumerate() {
             for &corner in triangle {
                 let p = positions[corner as usize];

@@ -3,8 +3,9 @@
 //!
 //! The normal of a corner is the mean of the face normals around its vertex that lie within [`CREASE_DEGREES`] of the
 //! face's own, weighted by the angle that each face has at the vertex (Thürmer and Wüthrich, "Computing vertex normals
-//! from polygonal facets", 1998), which does not depend on how flat parts are cut into triangles. Faces meet where
-//! they share a vertex index. Sums run in the order of triangles: the same bits on every machine.
+//! from polygonal facets", 1998) times its area. The area keeps large flat faces flat beside their narrow bevels: by
+//! angle alone a bevelled mirror reflects like a curved one. Faces meet where they share a vertex index. Sums run in
+//! the order of triangles: the same bits on every machine.
 
 use glam::Vec3;
 
@@ -65,10 +66,10 @@ pub(super) fn compute(positions: &[Vec3], triangles: &[[u32; 3]], missing: &[u8]
                 None => around
                     .iter()
                     .filter(|other| dot(here.normal, other.normal) >= CREASE_COSINE)
-                    .fold(Vec3::ZERO, |sum, other| sum + other.normal * other.angle),
+                    .fold(Vec3::ZERO, |sum, other| sum + other.normal * other.weight),
             };
-            // The face itself always counts unless its angle is 0.
-            let normal = if dot(sum, sum) > 1.0e-20 { sum } else { here.normal };
+            // The face itself always counts unless its weight is 0; faces within the crease angle cannot cancel it.
+            let normal = if sum.abs().max_element() > f32::MIN_POSITIVE { sum } else { here.normal };
             corner_normals[t][k] = pack_normal(normal);
         }
     }
@@ -79,8 +80,8 @@ struct Around {
     corner: u32,
     /// Of unit length.
     normal: Vec3,
-    /// In radians.
-    angle: f32,
+    /// Angle at the vertex in radians times twice the area in squared scene units.
+    weight: f32,
 }
 
 impl Around {
@@ -91,7 +92,8 @@ impl Around {
         let (e, f) = (p(k + 1) - p(k), p(k + 2) - p(k));
         let cosine = dot(e, f) / (dot(e, e) * dot(f, f)).sqrt();
         let angle = if cosine.is_finite() { arc_cosine(cosine) } else { 0.0 };
-        Around { corner, normal: unit(cross(b - a, c - a)), angle }
+        let area_vector = cross(b - a, c - a);
+        Around { corner, normal: unit(area_vector), weight: angle * area_vector.length() }
     }
 }
 
@@ -119,7 +121,7 @@ fn sums_by_direction(around: &[Around]) -> Vec<Vec3> {
     };
     let places: Vec<usize> = around.iter().map(|a| cell_of(a.normal)).collect();
     for (a, &place) in around.iter().zip(&places) {
-        cells[place] += a.normal * a.angle;
+        cells[place] += a.normal * a.weight;
     }
     let used: Vec<(usize, Vec3)> =
         (0..cells.len()).filter(|&i| cells[i] != Vec3::ZERO).map(|i| (i, unit(cells[i]))).collect();
