@@ -41,8 +41,12 @@ fn call_with_exception_pending<'local>(env: &mut Env<'local>, _class: JClass<'lo
 }
 
 /// Called by the Java VM when the library is loaded.
+///
+/// # Safety
+///
+/// For the Java VM alone to call, with its own pointer.
 #[unsafe(no_mangle)]
-pub extern "system" fn JNI_OnLoad(vm: *mut jni::sys::JavaVM, _reserved: *mut c_void) -> jni::sys::jint {
+pub unsafe extern "system" fn JNI_OnLoad(vm: *mut jni::sys::JavaVM, _reserved: *mut c_void) -> jni::sys::jint {
     // SAFETY: the Java VM calls this function with its own valid pointer; all methods are static on both sides.
     unsafe { guard::register(vm, jni_str!("dev/rarefy/GuardProbe"), METHODS) }
 }

@@ -22,8 +22,12 @@ fn version<'local>(env: &mut Env<'local>, _class: JClass<'local>) -> Result<JStr
 /// Called by the Java VM when the library is loaded: registers the native methods.
 ///
 /// Returns the JNI version that the library needs, or `JNI_ERR` with a pending `UnsatisfiedLinkError` that says why.
+///
+/// # Safety
+///
+/// For the Java VM alone to call, with its own pointer.
 #[unsafe(no_mangle)]
-pub extern "system" fn JNI_OnLoad(vm: *mut jni::sys::JavaVM, _reserved: *mut c_void) -> jni::sys::jint {
+pub unsafe extern "system" fn JNI_OnLoad(vm: *mut jni::sys::JavaVM, _reserved: *mut c_void) -> jni::sys::jint {
     // SAFETY: the Java VM calls this function with its own valid pointer; each function in METHODS is static, as is its
     // declaration in Native.java, and `native_method!` made its signature from the function's types.
     unsafe { guard::register(vm, jni_str!("dev/rarefy/Native"), METHODS) }
