@@ -6,7 +6,7 @@
 use glam::{DVec3, Vec2, Vec3};
 use rarefy::builtin;
 use rarefy::layout::*;
-use rarefy::options::{Correction, CorrectionMethod, Mode, RenderOptions, Tolerances};
+use rarefy::options::{Correction, CorrectionMethod, Interpolation, Mode, RenderOptions, Tolerances};
 use rarefy::scene::{Material, Scene};
 use rarefy_host_tests::fixtures::*;
 
@@ -461,6 +461,56 @@ fn the_strictest_tolerances_give_the_full_picture() {
         }
     }
     assert!(differing > 8, "only {differing} pictures differ with wide tolerances");
+}
+
+#[test]
+fn the_strictest_tolerances_trace_even_pixels_that_see_one_point() {
+    // Through so narrow a view that all rays are the same, distances are exactly zero.
+    let mut builder = SceneBuilder::new("point").camera(v(3.0, 4.0, 3.0), v(2.0, 3.0, 0.0), 1e-7);
+    builder.object(matte(Vec3::ONE));
+    builder.wall(Vec2::splat(-9.0), Vec2::splat(9.0), 0.0);
+    let mut renderer = twin_renderer(builder.build(1.0));
+    for (t_pos, interpolated) in [(0.0, 0), (1e-6, 32 * 32 - 16 * 16 - 16 - 32)] {
+        let options = RenderOptions { width: 32, height: 32, ..adaptive(2, tolerances(t_pos)) };
+        assert_eq!(draw(&mut renderer, &options).stats.pixels.interpolated, interpolated, "t_pos {t_pos}");
+    }
+}
+
+/// The largest relative errors of position and texture coordinate in the interpolated pixels of a tilted plane.
+fn interpolation_errors(block: u32, interpolation: Interpolation) -> [f64; 2] {
+    let eye = Eye { at: DVec3::new(0.0, 1.0, 0.0), look_at: DVec3::new(0.3, 0.4, -1.0), fov_degrees: 50.0 };
+    let mut builder = eye.seen_from(SceneBuilder::new("floor"));
+    let texture = builder.texture(1, vec![u32::MAX]);
+    builder.object(Material { diffuse_texture: Some(texture), ..matte(Vec3::ONE) });
+    let corners = [v(-40.0, 0.0, 40.0), v(40.0, 0.0, 40.0), v(40.0, 0.0, -40.0), v(-40.0, 0.0, -40.0)];
+    // One repetition, and its border far away.
+    builder.quad_with(corners, ONCE);
+    let mut renderer = twin_renderer(builder.build(1.0));
+    let options = RenderOptions { interpolation, ..adaptive(block, tolerances(100.0)) };
+    let interpolated = draw(&mut renderer, &options).stats.pixels.interpolated;
+    assert!(interpolated > u64::from(W * H) * 7 / 10, "only {interpolated} pixels are interpolated");
+    let mut plane =
+        |p| renderer.plane(p).unwrap().into_iter().map(|w| f64::from(f32::from_bits(w))).collect::<Vec<_>>();
+    let [x, z, s, t] = [PLANE_POSITION_X, PLANE_POSITION_Z, PLANE_TEXCOORD_S, PLANE_TEXCOORD_T].map(&mut plane);
+    let mut errors = [0f64; 2];
+    for at in 0..(W * H) as usize {
+        let d = eye.direction((at as u32 % W, at as u32 / W));
+        let p = eye.at - d * (eye.at.y / d.y);
+        let size = p.distance(eye.at);
+        errors[0] = errors[0].max((x[at] - p.x).hypot(z[at] - p.z) / size);
+        errors[1] = errors[1].max((s[at] - (p.x + 40.0) / 80.0).hypot(t[at] - (40.0 - p.z) / 80.0) / size);
+    }
+    errors
+}
+
+#[test]
+fn perspective_interpolation_is_exact_on_planes_and_plain_interpolation_is_not() {
+    for block in [2, 4] {
+        let [position, texcoord] = interpolation_errors(block, Interpolation::Perspective);
+        assert!(position < 2e-6 && texcoord < 1e-6, "blocks of {block}: {position}, {texcoord}");
+        let [position, texcoord] = interpolation_errors(block, Interpolation::Plain);
+        assert!(position > 1e-4 && texcoord > 1e-6, "blocks of {block}: plain is as good: {position}, {texcoord}");
+    }
 }
 
 #[test]
