@@ -476,6 +476,71 @@ fn the_strictest_tolerances_trace_even_pixels_that_see_one_point() {
     }
 }
 
+/// The largest differences of the interpolated pixels of a picture from the means of their references: of positions,
+/// normals, texture coordinates, reflected colours. `weight` is the first reference's, from the depths of both.
+fn differences_from_means(scene: &Scene, options: &RenderOptions, weight: fn(f64, f64) -> f64) -> [f64; 4] {
+    let mut renderer = twin_renderer(scene.clone());
+    draw(&mut renderer, options);
+    let planes: Vec<Vec<u32>> = (0..PLANE_COUNT).map(|p| renderer.plane(p).unwrap()).collect();
+    let camera = scene.view.camera;
+    let (eye, forward) = (camera.eye.as_dvec3(), (camera.look_at - camera.eye).as_dvec3().normalize());
+    let value = |plane: u32, at: usize| f64::from(f32::from_bits(planes[plane as usize][at]));
+    let vector = |plane: u32, at: usize| DVec3::new(value(plane, at), value(plane + 1, at), value(plane + 2, at));
+    let mut worst = [0f64; 4];
+    let size = (options.width, options.height);
+    for at in 0..(size.0 * size.1) as usize {
+        let pixel = (at as u32 % size.0, at as u32 / size.0);
+        let Role::Between(references) = role(pixel, size, options.block) else { continue };
+        if planes[PLANE_CLASS as usize][at] & CLASS_MASK != CLASS_INTERPOLATED {
+            continue;
+        }
+        let [a, b] = references.map(|(x, y)| (y * size.0 + x) as usize);
+        for copied in [PLANE_OBJECT, PLANE_SHADOW] {
+            assert_eq!(planes[copied as usize][at], planes[copied as usize][a], "{pixel:?}: plane {copied}");
+        }
+        let depth = |at| (vector(PLANE_POSITION_X, at) - eye).dot(forward);
+        let wa = weight(depth(a), depth(b));
+        let mean = |plane| vector(plane, a) * wa + vector(plane, b) * (1.0 - wa);
+        let mean_of_one = |plane| value(plane, a) * wa + value(plane, b) * (1.0 - wa);
+        let st = |s: f64, t: f64| DVec3::new(s, t, 0.0);
+        let found = [
+            vector(PLANE_POSITION_X, at).distance(mean(PLANE_POSITION_X)),
+            vector(PLANE_NORMAL_X, at).distance(mean(PLANE_NORMAL_X).normalize()),
+            st(value(PLANE_TEXCOORD_S, at), value(PLANE_TEXCOORD_T, at))
+                .distance(st(mean_of_one(PLANE_TEXCOORD_S), mean_of_one(PLANE_TEXCOORD_T))),
+            vector(PLANE_GCOL_R, at).distance(mean(PLANE_GCOL_R)),
+        ];
+        (0..4).for_each(|k| worst[k] = worst[k].max(found[k]));
+    }
+    worst
+}
+
+#[test]
+fn interpolated_pixels_hold_the_means_of_their_references() {
+    let perspective = |za: f64, zb: f64| zb / (za + zb);
+    for name in ["spheres", "mirror-room"] {
+        let scene = builtin::to_scene(name).unwrap();
+        for block in [2, 4] {
+            let options = RenderOptions { width: 131, height: 97, ..adaptive(block, tolerances(0.3)) };
+            let plain = RenderOptions { interpolation: Interpolation::Plain, ..options.clone() };
+            let options = RenderOptions { interpolation: Interpolation::Perspective, ..options };
+            for worst in [
+                differences_from_means(&scene, &options, perspective),
+                differences_from_means(&scene, &plain, |_, _| 0.5),
+            ] {
+                assert!(worst.iter().all(|&w| w < 5e-6), "{name}, blocks of {block}: {worst:?}");
+            }
+            // Negative controls: the first reference alone, and the other weights.
+            let first = differences_from_means(&scene, &plain, |_, _| 1.0);
+            // In the room, all is flat.
+            let bent = name == "spheres";
+            assert!(first.iter().enumerate().all(|(k, &w)| w > 1e-3 || (k == 1 && !bent)), "{name}: {first:?}");
+            let other = differences_from_means(&scene, &options, |_, _| 0.5);
+            assert!(other[0] > 1e-4, "{name}: {other:?}");
+        }
+    }
+}
+
 /// The largest relative errors of position and texture coordinate in the interpolated pixels of a tilted plane.
 fn interpolation_errors(block: u32, interpolation: Interpolation) -> [f64; 2] {
     let eye = Eye { at: DVec3::new(0.0, 1.0, 0.0), look_at: DVec3::new(0.3, 0.4, -1.0), fov_degrees: 50.0 };
