@@ -2,3 +2,4 @@
 //! Fixtures and assertions that the desktop tests share.
 
 pub mod fixtures;
+pub mod masks;
