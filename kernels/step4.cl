@@ -41,11 +41,15 @@ static inline uint pixel_plane_index(__constant FrameParams *frame, uint pixel) 
   return plane_index(frame, pixel & 0xffffu, pixel >> 16);
 }
 
+// Only interpolated pixels have a claim that means anything: check_pixel resets it, other pixels hold what was there.
 static inline bool claimed_by(__constant FrameParams *frame, const StepParams *step, __global const uint *attributes,
                               __global const uint *list, uint i) {
   const uint pixel = neighbour(frame, step, list, i);
   if (pixel == NO_PIXEL) return false;
-  return attributes[PLANE_CLAIM * frame->plane_pitch + pixel_plane_index(frame, pixel)] == i;
+  const uint pitch = frame->plane_pitch;
+  const uint to = pixel_plane_index(frame, pixel);
+  return attributes[PLANE_CLAIM * pitch + to] == i &&
+         (attributes[PLANE_CLASS * pitch + to] & CLASS_MASK) == CLASS_INTERPOLATED;
 }
 
 #define PACK_FLAG(i) claimed_by(frame, &step, attributes, list, i)

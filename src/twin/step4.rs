@@ -54,14 +54,21 @@ pub fn step4_mark(scene: &SceneArgs, step: &StepParams, i: u32, buffers: &FrameB
     }
 }
 
+/// Only interpolated pixels have a claim that means anything: `check_pixel` resets it, other pixels hold what was there.
+fn claimed_by(frame: &FrameParams, step: &StepParams, buffers: &FrameBuffers, i: u32) -> bool {
+    let pixel = neighbour(frame, step, buffers, i);
+    if pixel == NO_PIXEL {
+        return false;
+    }
+    let planes = &buffers.attributes;
+    let pitch = frame.plane_pitch;
+    let to = pixel_plane_index(frame, pixel);
+    planes.get(PLANE_CLAIM * pitch + to) == i && planes.get(PLANE_CLASS * pitch + to) & CLASS_MASK == CLASS_INTERPOLATED
+}
+
 /// One work-item of `step4_count`.
 pub fn step4_count(scene: &SceneArgs, step: &StepParams, chunk: u32, buffers: &FrameBuffers) {
-    let frame = scene.frame;
-    pack::count(chunk, step.item_count, &buffers.masks, &buffers.sums, |i| {
-        let pixel = neighbour(frame, step, buffers, i);
-        pixel != NO_PIXEL
-            && buffers.attributes.get(PLANE_CLAIM * frame.plane_pitch + pixel_plane_index(frame, pixel)) == i
-    });
+    pack::count(chunk, step.item_count, &buffers.masks, &buffers.sums, |i| claimed_by(scene.frame, step, buffers, i));
 }
 
 /// One work-group of `step4_scan`.

@@ -1,0 +1,377 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Post-correction against its definition: the least fixed point of "a traced adaptive pixel whose interpolated
+//! neighbour differs has that neighbour traced; one that turns out changed goes on", found here by a plain worklist
+//! that takes what rays find from the full picture.
+#![allow(clippy::unwrap_used)]
+
+use rarefy::backend::{Backend, FrameBuffer};
+use rarefy::builtin;
+use rarefy::layout::*;
+use rarefy::options::{Correction, CorrectionMethod, Mode, RenderOptions};
+use rarefy::renderer::Renderer;
+use rarefy::scene::Scene;
+use rarefy::stage::Kernel;
+use rarefy_host_tests::fixtures::*;
+
+/// The planes of a frame that correction is about, row-major.
+#[derive(Debug, Clone, PartialEq)]
+struct Planes {
+    width: usize,
+    class: Vec<u32>,
+    object: Vec<u32>,
+    shadow: Vec<u32>,
+    color: Vec<u32>,
+}
+
+fn planes(renderer: &mut Renderer, options: &RenderOptions) -> Planes {
+    let frame = draw(renderer, options);
+    planes_of(renderer, options, frame.pixels)
+}
+
+fn planes_of(renderer: &mut Renderer, options: &RenderOptions, color: Vec<u32>) -> Planes {
+    let mut plane = |plane| renderer.plane(plane).unwrap();
+    let class = plane(PLANE_CLASS);
+    Planes { width: options.width as usize, class, object: plane(PLANE_OBJECT), shadow: plane(PLANE_SHADOW), color }
+}
+
+impl Planes {
+    fn is(&self, at: usize, classes: &[u32]) -> bool {
+        classes.contains(&(self.class[at] & CLASS_MASK))
+    }
+
+    fn neighbours(&self, at: usize) -> impl Iterator<Item = usize> + use<> {
+        let (width, len) = (self.width, self.class.len());
+        let left = (at % width > 0).then(|| at - 1);
+        let right = (at % width + 1 < width).then_some(at + 1);
+        let up = (at >= width).then(|| at - width);
+        let down = (at + width < len).then_some(at + width);
+        [left, right, up, down].into_iter().flatten()
+    }
+
+    fn differ(&self, a: usize, b: usize, shadows: bool) -> bool {
+        self.object[a] != self.object[b] || (shadows && self.shadow[a] != self.shadow[b])
+    }
+
+    fn spreads(&self, from: usize, to: usize, shadows: bool) -> bool {
+        self.is(from, &[CLASS_TRACED, CLASS_CORRECTED])
+            && self.is(to, &[CLASS_INTERPOLATED])
+            && self.differ(from, to, shadows)
+    }
+
+    fn fired(&self) -> Vec<usize> {
+        (0..self.class.len()).filter(|&at| self.is(at, &[CLASS_CORRECTED, CLASS_CONFIRMED])).collect()
+    }
+
+    /// Pixels whose object (or shadow bits) are not those of full tracing.
+    fn wrong(&self, full: &Planes, shadows: bool) -> Vec<usize> {
+        let differs =
+            |&at: &usize| self.object[at] != full.object[at] || (shadows && self.shadow[at] != full.shadow[at]);
+        (0..self.class.len()).filter(differs).collect()
+    }
+}
+
+/// The worklist. `order` says which waiting pixel is next; `full` what a ray finds.
+fn least_fixed_point(before: &Planes, full: &Planes, shadows: bool, order: &mut dyn FnMut(usize) -> usize) -> Planes {
+    let mut now = before.clone();
+    let mut waiting: Vec<usize> = (0..now.class.len()).filter(|&at| now.is(at, &[CLASS_TRACED])).collect();
+    while !waiting.is_empty() {
+        let from = waiting.swap_remove(order(waiting.len()));
+        for to in now.neighbours(from) {
+            if !now.spreads(from, to, shadows) {
+                continue;
+            }
+            let old = (now.object[to], now.shadow[to]);
+            (now.object[to], now.shadow[to], now.color[to]) = (full.object[to], full.shadow[to], full.color[to]);
+            let changed = old.0 != now.object[to] || (shadows && old.1 != now.shadow[to]);
+            now.class[to] = if changed { CLASS_CORRECTED } else { CLASS_CONFIRMED };
+            if changed {
+                waiting.push(to);
+            }
+        }
+    }
+    now
+}
+
+fn adaptive(width: u32, height: u32, block: u32, correction: Correction, method: CorrectionMethod) -> RenderOptions {
+    RenderOptions { correction, correction_method: method, ..options(Mode::Adaptive, width, height, block) }
+}
+
+fn full(renderer: &mut Renderer, width: u32, height: u32) -> Planes {
+    planes(renderer, &options(Mode::Full, width, height, 2))
+}
+
+/// A lattice of thin bars of many objects under two lights, in front of a wall and the background.
+fn lattice() -> Scene {
+    let mut builder = SceneBuilder::new("lattice").camera(v(0.3, 0.2, 3.0), v(0.0, 0.0, 0.0), 45.0);
+    builder = builder.light(v(2.0, 2.0, 3.0), 6.0).light(v(-1.5, 1.0, 2.0), 4.0).environment(0.1, v(0.3, 0.4, 0.5));
+    builder.object(matte(v(0.8, 0.8, 0.7)));
+    builder.wall(glam::Vec2::splat(-0.9), glam::Vec2::splat(0.9), -0.5);
+    let mut random = Random::new(3);
+    for i in 0..24 {
+        builder.object(matte(random.point(1.0)));
+        let at = (i as f32 - 11.5) * 0.11;
+        let (thick, lean) = (random.range(0.002, 0.03), random.range(-0.3, 0.3));
+        let (a, b) = if i % 2 == 0 {
+            (v(at, -1.2, 0.0), v(at + lean, 1.2, 0.3))
+        } else {
+            (v(-1.2, at, 0.2), v(1.2, at + lean, 0.0))
+        };
+        let aside = if i % 2 == 0 { v(thick, 0.0, 0.0) } else { v(0.0, thick, 0.0) };
+        builder.quad([a, a + aside, b + aside, b]);
+    }
+    builder.build(4.0)
+}
+
+fn scenes() -> Vec<Scene> {
+    let mut scenes = vec![lattice()];
+    scenes.extend(["rods", "spheres", "mirror-room"].map(|name| builtin::to_scene(name).unwrap()));
+    scenes
+}
+
+const SIZES: [(u32, u32); 6] = [(1, 1), (7, 1), (1, 7), (33, 17), (64, 64), (129, 95)];
+const SHADOWS: [(Correction, bool); 2] = [(Correction::Object, false), (Correction::ObjectAndShadow, true)];
+
+/// Draws every scene in every size with both sizes of blocks and both corrections.
+fn for_all(mut check: impl FnMut(&mut Renderer, RenderOptions, bool, &str)) {
+    for scene in scenes() {
+        let mut renderer = twin_renderer(scene);
+        for (width, height) in SIZES {
+            for (block, (correction, shadows)) in [2, 4].into_iter().flat_map(|b| SHADOWS.map(|s| (b, s))) {
+                let options = adaptive(width, height, block, correction, CorrectionMethod::Converged);
+                let name = format!("{} {width}x{height}, blocks of {block}, {correction:?}", renderer.name());
+                check(&mut renderer, options, shadows, &name);
+            }
+        }
+    }
+}
+
+fn without_correction(renderer: &mut Renderer, options: &RenderOptions) -> Planes {
+    planes(renderer, &RenderOptions { correction: Correction::Off, ..options.clone() })
+}
+
+#[test]
+fn converged_correction_is_the_least_fixed_point_in_any_order() {
+    let mut random = Random::new(9);
+    let (mut fired, mut confirmed, mut controls) = (0, 0, 0);
+    for_all(|renderer, options, shadows, name| {
+        let full = full(renderer, options.width, options.height);
+        let before = without_correction(renderer, &options);
+        let found = planes(renderer, &options);
+        let expected = least_fixed_point(&before, &full, shadows, &mut |n| n - 1);
+        assert!(found == expected, "{name}: {:?} instead of {:?}", found.fired(), expected.fired());
+        assert!(least_fixed_point(&before, &full, shadows, &mut |_| 0) == expected, "{name}: first come");
+        assert!(least_fixed_point(&before, &full, shadows, &mut |n| random.below(n)) == expected, "{name}: at random");
+        fired += expected.fired().len();
+        confirmed += (0..expected.class.len()).filter(|&at| expected.is(at, &[CLASS_CONFIRMED])).count();
+        // Negative control: the other comparison gives another set.
+        controls += usize::from(least_fixed_point(&before, &full, !shadows, &mut |n| n - 1) != found);
+    });
+    println!("{fired} pixels fired, {confirmed} confirmed, {controls} told apart");
+    assert!(fired > 2000 && confirmed > 50 && controls > 10, "{fired} fired, {confirmed} confirmed, {controls}");
+}
+
+#[test]
+fn nothing_that_correction_can_reach_stays_wrong() {
+    let (mut wrong_before, mut wrong_after) = (0, 0);
+    for_all(|renderer, options, shadows, name| {
+        let full = full(renderer, options.width, options.height);
+        let before = without_correction(renderer, &options);
+        let after = planes(renderer, &options);
+        for at in 0..after.class.len() {
+            for to in after.neighbours(at) {
+                assert!(!after.spreads(at, to, shadows), "{name}: {at} still wants {to}");
+            }
+            if !after.is(at, &[CLASS_INTERPOLATED]) {
+                let same = (after.object[at], after.shadow[at], after.color[at]);
+                assert_eq!(same, (full.object[at], full.shadow[at], full.color[at]), "{name}: {at}");
+            }
+        }
+        let wrong = [before.wrong(&full, shadows), after.wrong(&full, shadows)];
+        assert!(wrong[1].iter().all(|at| wrong[0].contains(at)), "{name}: correction broke a pixel");
+        wrong_before += wrong[0].len();
+        wrong_after += wrong[1].len();
+    });
+    println!("wrong pixels: {wrong_before}, corrected {wrong_after}");
+    assert!(wrong_after * 4 < wrong_before * 3, "{wrong_before} wrong pixels, {wrong_after} after correction");
+}
+
+/// For each object of a full picture: its pixels with another object and those with other shadow bits.
+fn broken(renderer: &mut Renderer, full: &Planes, size: u32, correction: Correction) -> Vec<(usize, usize)> {
+    let found = planes(renderer, &adaptive(size, size, 2, correction, CorrectionMethod::Converged));
+    let mut broken = vec![(0, 0); 13];
+    for (at, &object) in full.object.iter().enumerate() {
+        broken[object as usize].0 += usize::from(found.object[at] != object);
+        broken[object as usize].1 += usize::from(found.shadow[at] != full.shadow[at]);
+    }
+    broken
+}
+
+#[test]
+fn thin_rods_and_their_shadows_are_broken_without_correction_and_whole_with_it() {
+    // Object 0 is the wall, 1 to 12 are rods, ever thicker: 0.6 to 3.4 pixels wide at 256x256, twice that at 512x512.
+    let mut renderer = twin_renderer(builtin::to_scene("rods").unwrap());
+    let mut by_correction = |size| {
+        let full = full(&mut renderer, size, size);
+        [Correction::Off, Correction::Object, Correction::ObjectAndShadow].map(|correction| {
+            let broken = broken(&mut renderer, &full, size, correction);
+            println!("{size}x{size}, {correction:?}: {broken:?}");
+            broken
+        })
+    };
+    let [off, object, both] = by_correction(512);
+    assert!(off[1].0 > 100 && off[2].0 > 50 && off[0].1 > 100, "nothing to correct: {off:?}");
+    assert!(object.iter().all(|rod| rod.0 == 0), "rods are still broken: {object:?}");
+    // Object ids alone leave the shadows broken.
+    assert_eq!(object[0].1, off[0].1);
+    assert!(both.iter().all(|&rod| rod == (0, 0)), "rods or shadows are still broken: {both:?}");
+
+    // Where a rod is narrower than a pixel, no adaptive ray need find it, and nothing starts a correction.
+    let [off, object, both] = by_correction(256);
+    assert!((1..=6).all(|rod| off[rod].0 > 10), "nothing to correct: {off:?}");
+    assert!(object[3..].iter().all(|rod| rod.0 == 0), "rods are still broken: {object:?}");
+    assert!(object[1].0 > 0 && object[2].0 > 0, "rods narrower than a pixel are whole: is the picture right?");
+    assert!(both.iter().zip(&object).all(|(b, o)| b.0 <= o.0 && b.1 <= o.1));
+    assert!(both[0].1 * 4 < off[0].1, "shadows are still broken: {both:?}");
+}
+
+#[test]
+fn the_sweeps_fire_part_of_the_fixed_point_and_all_of_it_when_repeated() {
+    let (mut once_in_all, mut converged_in_all, mut proper) = (0, 0, 0);
+    for_all(|renderer, options, shadows, name| {
+        let converged = planes(renderer, &options);
+        let sweeps = RenderOptions { correction_method: CorrectionMethod::Sweeps, ..options.clone() };
+        let once = planes(renderer, &sweeps);
+        for at in once.fired() {
+            assert_eq!(once.class[at], converged.class[at], "{name}: {at} fired by the sweeps");
+        }
+        let full = full(renderer, options.width, options.height);
+        let before = without_correction(renderer, &options);
+        let expected = sweep_once(&before, &full, shadows);
+        assert!(once == expected, "{name}: {:?} instead of {:?}", once.fired(), expected.fired());
+        let mut repeated = once.clone();
+        loop {
+            let next = sweep_once(&repeated, &full, shadows);
+            if next == repeated {
+                break;
+            }
+            repeated = next;
+        }
+        assert!(repeated == converged, "{name}: repeated sweeps end elsewhere");
+        once_in_all += once.fired().len();
+        converged_in_all += converged.fired().len();
+        proper += usize::from(once != converged);
+    });
+    println!("{once_in_all} of {converged_in_all} fired by one round of sweeps; fewer in {proper} pictures");
+    assert!(once_in_all * 2 > converged_in_all && proper > 0, "{once_in_all} of {converged_in_all}, {proper}");
+}
+
+/// The paper's round: each row there and back, then each column, one pixel after the other.
+fn sweep_once(before: &Planes, full: &Planes, shadows: bool) -> Planes {
+    let mut now = before.clone();
+    let (width, height) = (now.width, now.class.len() / now.width);
+    let rows = (0..height).map(|y| (0..width).map(|x| y * width + x).collect::<Vec<_>>());
+    let columns = (0..width).map(|x| (0..height).map(|y| y * width + x).collect::<Vec<_>>());
+    for line in rows.chain(columns) {
+        let forth = line.windows(2).map(|w| (w[0], w[1]));
+        let back = line.windows(2).rev().map(|w| (w[1], w[0]));
+        for (from, to) in forth.chain(back) {
+            if now.spreads(from, to, shadows) {
+                let changed = now.object[to] != full.object[to] || (shadows && now.shadow[to] != full.shadow[to]);
+                now.class[to] = if changed { CLASS_CORRECTED } else { CLASS_CONFIRMED };
+                (now.object[to], now.shadow[to], now.color[to]) = (full.object[to], full.shadow[to], full.color[to]);
+            }
+        }
+    }
+    now
+}
+
+/// One launch of step4's kernels at a time, as the pipeline does it, from `sources` in any order.
+fn rounds_by_hand(backend: &mut dyn Backend, mut sources: Vec<u32>, flags: u32) -> u32 {
+    let mut fired = 0;
+    while !sources.is_empty() {
+        let count = sources.len() as u32;
+        backend.write(FrameBuffer::List, &sources).unwrap();
+        let step = StepParams {
+            flags,
+            item_count: 4 * count,
+            list_offset: count,
+            scan_group: backend.scan_group(),
+            ..NO_STEP
+        };
+        backend.run(Kernel::Step4Mark, &step).unwrap();
+        backend.run(Kernel::Step4Count, &step).unwrap();
+        let (mut level, mut sums_offset) = (step.item_count.div_ceil(32), 0);
+        loop {
+            backend.run(Kernel::Step4Scan, &StepParams { item_count: level, sums_offset, ..step }).unwrap();
+            sums_offset += level;
+            level = level.div_ceil(step.scan_group);
+            if level == 1 {
+                break;
+            }
+        }
+        let found = backend.read_sum(sums_offset).unwrap();
+        if found > 0 {
+            backend.run(Kernel::Step4Scatter, &step).unwrap();
+            backend.run(Kernel::Step4Trace, &StepParams { item_count: found, ..step }).unwrap();
+        }
+        fired += found;
+        sources = backend.read(FrameBuffer::List, count as usize..(count + found) as usize).unwrap();
+    }
+    fired
+}
+
+const NO_STEP: StepParams = StepParams {
+    origin_x: 0,
+    origin_y: 0,
+    step_x: 0,
+    step_y: 0,
+    grid_width: 0,
+    grid_height: 0,
+    reference_dx: 0,
+    reference_dy: 0,
+    item_count: 0,
+    list_offset: 0,
+    source_offset: 0,
+    sums_offset: 0,
+    t_pos: 0.0,
+    t_norm: 0.0,
+    t_conv: 0.0,
+    t_tex: 0.0,
+    t_gcol: 0.0,
+    tests: 0,
+    flags: 0,
+    scan_group: 0,
+};
+
+#[test]
+fn the_kernels_give_the_same_for_sources_in_any_order() {
+    let mut random = Random::new(4);
+    let (width, height) = (129, 95);
+    for scene in [lattice(), builtin::to_scene("rods").unwrap()] {
+        let mut renderer = twin_renderer(scene);
+        for block in [2, 4] {
+            let options = adaptive(width, height, block, Correction::ObjectAndShadow, CorrectionMethod::Converged);
+            let expected = planes(&mut renderer, &options);
+            for order in 0..4 {
+                let before = without_correction(&mut renderer, &options);
+                let traced = (0..before.class.len() as u32).filter(|&at| before.is(at as usize, &[CLASS_TRACED]));
+                let mut sources: Vec<u32> = traced.map(|at| at % width | at / width << 16).collect();
+                match order {
+                    0 => (),
+                    1 => sources.reverse(),
+                    _ => (1..sources.len()).for_each(|i| sources.swap(i, random.below(i + 1))),
+                }
+                // Negative control: without the last sources, something stays uncorrected.
+                let complete = order != 3;
+                if !complete {
+                    sources.truncate(sources.len() / 2);
+                }
+                let fired = rounds_by_hand(renderer.backend(), sources, STEP_STORE | STEP_COMPARE_SHADOW);
+                let color = renderer.backend().read(FrameBuffer::Color, 0..before.class.len()).unwrap();
+                let found = planes_of(&mut renderer, &options, color);
+                assert_eq!(fired as usize, found.fired().len(), "each pixel is fired once");
+                assert_eq!(found == expected, complete, "{} in order {order}", renderer.name());
+            }
+        }
+    }
+}
