@@ -47,9 +47,12 @@ impl Shot {
         let mut options = RenderOptions { width: 50, height: 38, ..RenderOptions::default() };
         match self {
             Shot::Large => (options.width, options.height) = (210, 150),
-            Shot::RodsSwept => options.correction_method = CorrectionMethod::Sweeps,
+            Shot::Rods | Shot::RodsSwept => (options.width, options.height) = (100, 75),
             Shot::Strictest => options.tolerances.t_pos = 0.0,
-            Shot::Zoo | Shot::Room | Shot::Rods => {}
+            Shot::Zoo | Shot::Room => {}
+        }
+        if self == Shot::RodsSwept {
+            options.correction_method = CorrectionMethod::Sweeps;
         }
         options
     }
@@ -157,7 +160,7 @@ const RAY_TREE: &[Mutant] = &[
 #[rustfmt::skip]
 const SHADING: &[Mutant] = &[
     ("common/shade.clh", "a + (b - a) * wx", "a + (b - a) * wy", Shot::Room, Kernel::Step1),
-    ("common/shade.clh", "ix < 0 ? width - 1u", "ix < 0 ? 0u", Shot::Room, Kernel::Step1),
+    ("common/shade.clh", "ix < 0 ? width - 1u", "ix < 0 ? 0u", Shot::Zoo, Kernel::Step1),
     ("common/shade.clh", "(1.0f - t) * (float)height", "t * (float)height", Shot::Zoo, Kernel::Step1),
     ("common/shade.clh", "m->diffuse.xyz * own", "m->diffuse.xyz", Shot::Room, Kernel::Step1),
     ("common/shade.clh", "kd * frame->ambient.xyz", "kd", Shot::Rods, Kernel::Step1),
@@ -170,7 +173,7 @@ const SHADING: &[Mutant] = &[
     ("common/math.clh", "0x3f3504f3u", "0x3f800000u", Shot::Zoo, Kernel::Step1),
     ("common/math.clh", "f * (0.6931472f +", "f * (0.6f +", Shot::Zoo, Kernel::Step1),
     ("common/math.clh", "x >= 0.0f ? x - fold : x + fold", "x + fold", Shot::Zoo, Kernel::Step1),
-    ("common/math.clh", "x - floor(x)", "ceil(x) - x", Shot::Zoo, Kernel::Step1),
+    ("common/math.clh", "f = x - floor(x)", "f = ceil(x) - x", Shot::Zoo, Kernel::Step1),
 ];
 
 /// The seven tests and the interpolation.
@@ -188,7 +191,7 @@ const SIMILARITY: &[Mutant] = &[
     ("common/similarity.clh", "!(flags & STEP_GCOL_LINEAR)", "(flags & STEP_GCOL_LINEAR)", Shot::Zoo, Kernel::Step2a),
     ("common/similarity.clh", "wa = zb / (za + zb)", "wa = za / (za + zb)", Shot::Zoo, Kernel::Step3a),
     ("common/similarity.clh", "m.normal = normalize3(a->normal * wa + b->normal * wb)", "m.normal = a->normal * wa + b->normal * wb", Shot::Zoo, Kernel::Step2a),
-    ("common/similarity.clh", "m.gcol = a->gcol * wa + b->gcol * wb", "m.gcol = a->gcol", Shot::Room, Kernel::Step2a),
+    ("common/similarity.clh", "m.gcol = a->gcol * wa + b->gcol * wb", "m.gcol = a->gcol", Shot::Zoo, Kernel::Step3a),
     ("common/similarity.clh", "x + step->reference_dx >= frame->width", "x + step->reference_dx > frame->width", Shot::Zoo, Kernel::Step2a),
     ("common/similarity.clh", "attributes[PLANE_CLAIM * pitch + at] = NO_CLAIM", "attributes[PLANE_CLAIM * pitch + at] = 0u", Shot::Zoo, Kernel::Step3a),
     ("common/attributes.clh", "a.s = as_float(attributes[PLANE_TEXCOORD_S", "a.s = as_float(attributes[PLANE_TEXCOORD_T", Shot::Room, Kernel::Step2a),
@@ -199,7 +202,7 @@ const SIMILARITY: &[Mutant] = &[
 const PACKING: &[Mutant] = &[
     ("common/pack.clh", "k < 32u &&", "k < 31u &&", Shot::Zoo, Kernel::Step2bCount),
     ("common/pack.clh", "popcount(mask)", "popcount(mask >> 1)", Shot::Zoo, Kernel::Step3bCount),
-    ("common/pack.clh", "lane >= stride ?", "lane > stride ?", Shot::Zoo, Kernel::Step2bScan),
+    ("common/pack.clh", "lane >= stride ?", "lane > stride ?", Shot::Strictest, Kernel::Step2bScan),
     ("common/pack.clh", "scratch[from + lane] - value", "scratch[from + lane]", Shot::Zoo, Kernel::Step3bScan),
     ("common/pack.clh", "if (lane == lanes - 1u)", "if (lane == 0u)", Shot::Rods, Kernel::Step4Scan),
     ("common/pack.clh", "base += sums[offset + element]", "base = sums[offset + element]", Shot::Large, Kernel::Step2bScatter),
