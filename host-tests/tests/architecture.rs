@@ -23,7 +23,6 @@ const LAYERS: &[&[&str]] = &[
     &["compare", "layers", "report", "selftest"],
 ];
 
-/// What `profiles` and `opencl` are allowed to know of each other is settled inside their layer.
 fn layer(module: &str) -> Option<usize> {
     LAYERS.iter().position(|modules| modules.contains(&module))
 }
@@ -102,6 +101,11 @@ fn modules_use_only_what_comes_before_them() {
     assert!(wrong_way("src/renderer.rs", "use crate::scene::Scene;").is_empty());
 }
 
+/// `NAME` and the like; file names in capitals, such as `README.md`, lie outside the folders that are looked for.
+fn is_placeholder(word: &str) -> bool {
+    !word.is_empty() && word.chars().all(|c| c.is_ascii_uppercase())
+}
+
 /// Words of a document that look like paths within the repository.
 fn named_paths(text: &str) -> Vec<String> {
     let tops = ["src/", "kernels/", "android/", "host-tests/", "scenes/", ".ci/", "docs/"];
@@ -109,9 +113,8 @@ fn named_paths(text: &str) -> Vec<String> {
     let words = text.split(separators).map(|w| w.trim_end_matches(['.', ':', ')']).trim_start_matches("./"));
     words
         .filter(|w| tops.iter().any(|t| w.starts_with(t)))
-        .filter(|w| {
-            !w.contains(['*', '{', '$', '=']) && !w.split('/').any(|part| part.chars().all(|c| c.is_ascii_uppercase()))
-        })
+        // Patterns and place-holders (`*`, `NAME`) are not paths.
+        .filter(|w| !w.contains(['*', '{', '$', '=']) && !w.split(['/', '-', '.']).any(is_placeholder))
         .map(|w| w.split(['#', ':']).next().unwrap().trim_end_matches('/').to_owned())
         .filter(|w| !w.is_empty())
         .collect()

@@ -198,7 +198,7 @@ fn bad_input_is_one_clear_error_and_no_file() {
         ("render wall --size 0x64", &["--size", "0x64"]),
         ("render wall --size 16385x1", &["--size", "16385x1", "1 to 16384"]),
         ("render wall --size 16384x16384", &["16384x16384", "MiB", "--size"]),
-        ("render wall --size 64x64 --memory-budget 1", &["64x64", "--memory-budget", "1 MiB"]),
+        ("render wall --size 256x256 --memory-budget 1", &["256x256", "--memory-budget", "1 MiB"]),
         ("render wall --size -1x4", &["-1x4"]),
         ("render wall --size 64", &["WIDTHxHEIGHT"]),
         ("render wall --size 99999999999x1", &["99999999999x1"]),
@@ -207,6 +207,7 @@ fn bad_input_is_one_clear_error_and_no_file() {
         ("render wall --samples 3", &["--samples"]),
         ("render wall --t-pos nan", &["--t-pos", "NaN"]),
         ("render wall --t-norm 7", &["--t-norm", "7"]),
+        ("render wall --t-tex -0.5", &["--t-tex", "-0.5"]),
         ("render wall --layer shine=x.png", &["--layer", "shine", "fail-mask"]),
         ("render wall --layer normal", &["--layer", "NAME=FILE.png"]),
         ("render wall --mode full --layer class=x.png", &["--layer", "adaptive"]),
@@ -240,11 +241,12 @@ fn the_smallest_pictures_are_drawn() {
     let folder = folder();
     for (size, mode) in [("1x1", "full"), ("1x1", "adaptive"), ("1x7", "adaptive"), ("7x1", "adaptive")] {
         for block in [2, 4] {
-            let arguments = format!("render wall --device cpu --size {size} --mode {mode} --blocks {block} -o a.png");
+            let arguments =
+                format!("render spheres --device cpu --size {size} --mode {mode} --blocks {block} -o a.png");
             rarefy(&folder, &arguments).expect(0);
             let (width, height, pixels) = read_rgb8(folder.path().join("a.png")).unwrap();
             assert_eq!(format!("{width}x{height}"), size);
-            assert!(pixels.iter().all(|p| p & 0xff_ffff != 0), "{arguments}: black pixels on a lit wall");
+            assert!(pixels.iter().all(|p| p & 0xff_ffff != 0), "{arguments}: black pixels before a sky");
         }
     }
 }
