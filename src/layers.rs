@@ -35,8 +35,21 @@ pub enum Layer {
 impl Layer {
     /// Every layer's name, as on the command line.
     pub const NAMES: [&str; 15] = [
-        "color", "class", "fail-mask", "test-g1", "test-g2", "test-g3", "test-g4", "test-tx", "test-sh", "test-gc",
-        "object", "normal", "depth", "shadow", "rays",
+        "color",
+        "class",
+        "fail-mask",
+        "test-g1",
+        "test-g2",
+        "test-g3",
+        "test-g4",
+        "test-tx",
+        "test-sh",
+        "test-gc",
+        "object",
+        "normal",
+        "depth",
+        "shadow",
+        "rays",
     ];
 
     /// The layer called `name`.

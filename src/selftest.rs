@@ -24,12 +24,13 @@ use crate::stage::{Kernel, Stage};
 
 /// Scene of the self-test: mirror, glass, textures and shadows in a few triangles.
 const SCENE: &str = "spheres";
-const WIDTH: u32 = 50;
-const HEIGHT: u32 = 38;
+const WIDTH: u32 = 100;
+const HEIGHT: u32 = 76;
 /// Share of words that a device may get wrong because it rounds otherwise; a broken kernel gets far more wrong.
 const WRONG_LIMIT: f64 = 0.005;
-/// The twin's picture at [`WIDTH`] x [`HEIGHT`], FNV-1a over its words. Changes only with the method or the scene.
-const TWIN_CHECKSUM: u64 = 0;
+/// The twin's pictures of [`frames`], FNV-1a over their words. Changes only with the method, its defaults or the scene:
+/// then put in the checksum that `rarefy selftest --device cpu` prints.
+const TWIN_CHECKSUM: u64 = 0xd5ad_27db_8fe0_6758;
 
 /// The result of one check.
 #[derive(Debug, Clone)]
@@ -64,11 +65,9 @@ impl SelfTest {
     pub fn require(&self) -> Result<()> {
         match self.checks.iter().find(|c| !c.passed) {
             None => Ok(()),
-            Some(c) => Err(Error::SelfTest {
-                device: self.device.clone(),
-                stage: c.name.clone(),
-                message: c.detail.clone(),
-            }),
+            Some(c) => {
+                Err(Error::SelfTest { device: self.device.clone(), stage: c.name.clone(), message: c.detail.clone() })
+            }
         }
     }
 }
@@ -78,10 +77,18 @@ pub fn breaking_mutation(stage: Stage) -> Mutation {
     let (file, from, to) = match stage {
         Stage::Step1 => ("step1.cl", "step.step_x * gx", "step.step_x * (gx ^ 1u)"),
         Stage::Step2a => ("step2a.cl", "step.step_y * gy", "step.step_y * (gy ^ 1u)"),
-        Stage::Step2b => ("step2b.cl", "#define PACK_PIXEL(i) grid_item_pixel(&step, i)", "#define PACK_PIXEL(i) grid_item_pixel(&step, i ^ 1u)"),
+        Stage::Step2b => (
+            "step2b.cl",
+            "#define PACK_PIXEL(i) grid_item_pixel(&step, i)",
+            "#define PACK_PIXEL(i) grid_item_pixel(&step, i ^ 1u)",
+        ),
         Stage::Step2c => ("step2c.cl", "list[step.list_offset + item]", "list[step.list_offset]"),
         Stage::Step3a => ("step3a.cl", "step.step_y * gy", "step.step_y * (gy ^ 1u)"),
-        Stage::Step3b => ("step3b.cl", "#define PACK_PIXEL(i) grid_item_pixel(&step, i)", "#define PACK_PIXEL(i) grid_item_pixel(&step, i ^ 1u)"),
+        Stage::Step3b => (
+            "step3b.cl",
+            "#define PACK_PIXEL(i) grid_item_pixel(&step, i)",
+            "#define PACK_PIXEL(i) grid_item_pixel(&step, i ^ 1u)",
+        ),
         Stage::Step3c => ("step3c.cl", "list[step.list_offset + item]", "list[step.list_offset]"),
         Stage::Step4 => ("step4.cl", "case 0u: return x > 0u", "case 0u: return x > 1000u"),
     };
@@ -131,11 +138,7 @@ fn frames() -> [RenderOptions; 3] {
 ///
 /// # Errors
 /// A limit of the device, a kernel that does not build, or a failing call.
-pub fn stage_parity(
-    scene: &Scene,
-    buffers: &Arc<SceneBuffers>,
-    device: &mut dyn Backend,
-) -> Result<Vec<KernelParity>> {
+pub fn stage_parity(scene: &Scene, buffers: &Arc<SceneBuffers>, device: &mut dyn Backend) -> Result<Vec<KernelParity>> {
     let mut parity = ParityBackend::new(TwinBackend::new(Arc::clone(buffers)), device);
     for options in frames() {
         run_frame(&mut parity, scene, buffers, &options, true)?;
@@ -170,7 +173,11 @@ fn check_twin(scene: &Scene, buffers: &Arc<SceneBuffers>) -> Result<Check> {
         }
     }
     let passed = checksum == TWIN_CHECKSUM;
-    let detail = format!("checksum {checksum:#018x}, known answer {TWIN_CHECKSUM:#018x}");
+    let detail = if passed {
+        format!("checksum {checksum:#018x}, as it should be")
+    } else {
+        format!("checksum {checksum:#018x} instead of {TWIN_CHECKSUM:#018x}")
+    };
     Ok(Check { name: "twin".into(), passed, detail })
 }
 
@@ -198,9 +205,35 @@ fn check_parity(result: &KernelParity) -> Check {
             | Kernel::Step4Sweep
     );
     let limit = if exact { 0 } else { (result.words as f64 * WRONG_LIMIT) as u64 };
-    let mut detail = format!("{} of {} words differ from the twin, {} beyond rounding", result.different, result.words, result.wrong);
+    let mut detail = match result.different {
+        0 => format!("all {} words equal the twin's", result.words),
+        n => format!("{n} of {} words differ from the twin's, {} beyond rounding", result.words, result.wrong),
+    };
     if let Some((buffer, at, twin, device)) = result.first {
         detail += &format!("; first at {buffer:?}[{at}]: {device:#010x} instead of {twin:#010x}");
     }
     Check { name: result.kernel.name().into(), passed: result.wrong <= limit, detail }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_twin_gives_the_known_answer() {
+        let options = RendererOptions { device: DeviceChoice::Cpu, ..RendererOptions::default() };
+        let result = run(&options).unwrap();
+        let remedy =
+            "if the method, its defaults or the scene changed on purpose, put the first number into TWIN_CHECKSUM";
+        assert!(result.passed(), "{}: {remedy}", result.checks[0].detail);
+        assert!(result.require().is_ok());
+    }
+
+    #[test]
+    fn a_failed_check_names_device_and_stage() {
+        let failed = Check { name: "step2c".into(), passed: false, detail: "7 words".into() };
+        let result = SelfTest { device: "Adreno".into(), checks: vec![failed] };
+        assert!(!result.passed());
+        assert_eq!(result.require().unwrap_err().to_string(), "self-test failed on Adreno: step2c: 7 words");
+    }
 }

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Fixtures and assertions that the desktop tests share.
+#![allow(clippy::unwrap_used)]
 
+pub mod command;
 pub mod fixtures;
+pub mod frames;
 pub mod masks;

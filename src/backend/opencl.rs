@@ -87,7 +87,8 @@ impl OpenClBackend {
         let widest = door.limits().fit_work_group([SCAN_GROUP, 1], SCAN_GROUP as u64, true)[0];
         // The scratch memory of a scan: two words per work-item.
         let local_words = usize::try_from(door.limits().local_mem_bytes / 8).unwrap_or(usize::MAX).max(1);
-        let scan_group = previous_power_of_two(widest.min(local_words)) as u32;
+        // Groups of one would never add anything up; a device that has no larger ones refuses the launch.
+        let scan_group = previous_power_of_two(widest.min(local_words)).max(2) as u32;
         Ok(OpenClBackend {
             door,
             scene: on_device,

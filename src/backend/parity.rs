@@ -6,7 +6,7 @@ use super::twin::TwinBackend;
 use super::{Backend, BackendInfo, BufferSizes, FrameBuffer};
 use crate::error::Result;
 use crate::layout::{FrameParams, PLANE_GCOL_B, StepParams};
-use crate::stage::Kernel;
+use crate::stage::{Kernel, Stage};
 
 /// All buffers of a frame.
 const BUFFERS: [FrameBuffer; 6] = [
@@ -43,6 +43,7 @@ pub struct ParityBackend<'a> {
     device: &'a mut dyn Backend,
     sizes: Option<BufferSizes>,
     pitch: usize,
+    only: Option<Stage>,
     /// Results so far, one per kernel that was launched, in order of first launch.
     pub results: Vec<KernelParity>,
 }
@@ -50,7 +51,12 @@ pub struct ParityBackend<'a> {
 impl<'a> ParityBackend<'a> {
     /// Compares `device` with `twin`; both must hold the same scene.
     pub fn new(twin: TwinBackend, device: &'a mut dyn Backend) -> Self {
-        ParityBackend { twin, device, sizes: None, pitch: 1, results: Vec::new() }
+        ParityBackend { twin, device, sizes: None, pitch: 1, only: None, results: Vec::new() }
+    }
+
+    /// Compares the launches of `stage` alone; the twin alone runs the others, and the device builds no other program.
+    pub fn only(self, stage: Stage) -> Self {
+        ParityBackend { only: Some(stage), ..self }
     }
 
     fn size(&self, buffer: FrameBuffer) -> usize {
@@ -95,6 +101,9 @@ impl Backend for ParityBackend<'_> {
     }
 
     fn run(&mut self, kernel: Kernel, step: &StepParams) -> Result<()> {
+        if self.only.is_some_and(|stage| stage != kernel.stage()) {
+            return self.twin.run(kernel, step);
+        }
         for buffer in BUFFERS {
             let words = self.twin.read(buffer, 0..self.size(buffer))?;
             self.device.write(buffer, &words)?;

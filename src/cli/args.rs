@@ -137,7 +137,7 @@ pub struct DrawArgs {
     /// A folder with scene.obj and view.json, an OBJ file, or the name of a built-in scene.
     pub scene: String,
     /// Size of the picture in pixels.
-    #[arg(long, value_parser = parse_size, default_value = "1024x1024")]
+    #[arg(long, value_parser = parse_size, default_value = "1024x1024", allow_hyphen_values = true)]
     pub size: Size,
     /// Samples per pixel and axis.
     #[arg(long, default_value_t = 1)]
@@ -158,19 +158,19 @@ pub struct DrawArgs {
     #[arg(long, value_enum, default_value = "perspective")]
     pub interpolation: InterpolationArg,
     /// G2: largest distance of the two hits, as a share of the scene's extent.
-    #[arg(long)]
+    #[arg(long, allow_negative_numbers = true)]
     pub t_pos: Option<f32>,
     /// G3: least dot product of the normals.
-    #[arg(long)]
+    #[arg(long, allow_negative_numbers = true)]
     pub t_norm: Option<f32>,
     /// G4: sine of the slope below which a surface counts as flat.
-    #[arg(long)]
+    #[arg(long, allow_negative_numbers = true)]
     pub t_conv: Option<f32>,
     /// TX: how near to the border of its repetition a texture coordinate counts as at the border.
-    #[arg(long)]
+    #[arg(long, allow_negative_numbers = true)]
     pub t_tex: Option<f32>,
     /// GC: largest distance of the reflected colours.
-    #[arg(long)]
+    #[arg(long, allow_negative_numbers = true)]
     pub t_gcol: Option<f32>,
     /// GC: compare reflected colours as displayed or linearly.
     #[arg(long, value_enum, default_value = "display")]

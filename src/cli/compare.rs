@@ -13,7 +13,7 @@ use rarefy::stage::Stage;
 use rarefy::{Error, Result, report};
 
 use super::args::CompareArgs;
-use super::output::{say, write_json};
+use super::output::{check_json_writable, say, write_json};
 use super::progress::{Progress, make_renderer};
 
 /// Draws both ways in turn; prints the table, writes pictures and JSON.
@@ -22,6 +22,7 @@ pub fn run(args: &CompareArgs) -> Result<()> {
     if args.frames == 0 {
         return Err(Error::option("--frames", "0 frames cannot be timed; at least 1 is needed"));
     }
+    check_json_writable(args.draw.json.as_deref())?;
     if let Some(folder) = &args.output {
         std::fs::create_dir_all(folder).map_err(|e| Error::io(folder, e))?;
     }
@@ -60,7 +61,10 @@ fn table(renderer: &mut Renderer, options: &RenderOptions, c: &Comparison) -> Ve
             options.block,
             info.name
         ),
-        format!("  frame      full {:.1} ms, adaptive {:.1} ms: {:.2} times as fast", c.full.frame_ms, c.adaptive.frame_ms, c.speedup),
+        format!(
+            "  frame      full {:.1} ms, adaptive {:.1} ms: {:.2} times as fast",
+            c.full.frame_ms, c.adaptive.frame_ms, c.speedup
+        ),
         format!("  work       {:.2} times less (traversal steps and triangle tests)", c.work_speedup()),
         format!(
             "  traced     {:.2} % of the pixels, {:.2} % with correction (base {:.2} %, failed checks {:.2} %)",

@@ -7,13 +7,14 @@ use rarefy::{Error, Result};
 use serde_json::json;
 
 use super::args::DiffArgs;
-use super::output::{check_writable, say, write_json};
+use super::output::{check_json_writable, check_writable, say, write_json};
 
 /// Measures two pictures; writes the difference and the figures.
 pub fn run(args: &DiffArgs) -> Result<()> {
     if let Some(path) = &args.output {
         check_writable(path)?;
     }
+    check_json_writable(args.json.as_deref())?;
     let (width, height, reference) = read_rgb8(&args.reference)?;
     let (test_width, test_height, test) = read_rgb8(&args.test)?;
     let reference = Rgb8::new(width, height, &reference)?;

@@ -52,3 +52,11 @@ pub fn check_writable(path: &Path) -> Result<()> {
         Err(e) => Err(Error::io(folder, e)),
     }
 }
+
+/// As [`check_writable`], for `--json`.
+pub fn check_json_writable(path: Option<&Path>) -> Result<()> {
+    match path {
+        Some(path) if path != Path::new(STANDARD_OUTPUT) => check_writable(path),
+        _ => Ok(()),
+    }
+}

@@ -10,7 +10,7 @@ use rarefy::renderer::Keep;
 use rarefy::{Error, Result, report};
 
 use super::args::{ModeArg, RenderArgs};
-use super::output::{check_writable, say, write_json};
+use super::output::{check_json_writable, check_writable, say, write_json};
 use super::progress::make_renderer;
 
 /// Draws one frame; writes the picture, the layers and the statistics.
@@ -31,6 +31,7 @@ pub fn run(args: &RenderArgs) -> Result<()> {
         check_writable(path)?;
     }
     check_writable(&args.output)?;
+    check_json_writable(args.draw.json.as_deref())?;
 
     let (mut renderer, load_ms) = make_renderer(&args.draw.scene, &args.draw.renderer_options()?)?;
     let frame = renderer.render(&options, keep)?;

@@ -3,6 +3,7 @@
 
 use std::ffi::c_void;
 use std::path::Path;
+use std::sync::{Mutex, PoisonError};
 
 use opencl3::device::{CL_DEVICE_TYPE_ALL, get_device_data, get_device_ids};
 use opencl3::platform::platform::{
@@ -103,6 +104,9 @@ pub fn discover() -> Discovery {
 
 /// As [`discover`]; tries the library at `path` first. Only the first search of a process can choose the library.
 pub(crate) fn discover_with(path: Option<&Path>) -> Discovery {
+    // Drivers set their devices up at the first query; PoCL 3.1 crashes if another thread asks meanwhile.
+    static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
+    let _guard = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
     let search = library::find(path);
     let mut skipped = Vec::new();
     let Some(accepted) = &search.accepted else {

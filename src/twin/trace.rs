@@ -225,9 +225,7 @@ pub fn trace_pixel(scene: &SceneArgs, x: u32, y: u32, pixel_class: u32, flags: u
         store_attributes(planes, pitch, at, &a);
         let mask = if pixel_class == CLASS_BASE { 0 } else { planes.get(PLANE_CLASS * pitch + at) & !CLASS_MASK };
         planes.set(PLANE_CLASS * pitch + at, mask | new_class);
-        if pixel_class == CLASS_CORRECTED {
-            planes.set(PLANE_CLAIM * pitch + at, NO_CLAIM);
-        }
+        planes.set(PLANE_CLAIM * pitch + at, NO_CLAIM);
     }
     store_work(&out.counters, frame.plane_pitch, at, &work);
     out.color.set(y * frame.width + x, srgb_word(scene.tables, color));

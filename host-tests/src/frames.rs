@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Scenes ready to draw, devices to draw them on, and frames drawn without a renderer around them.
+
+use std::sync::Arc;
+
+use rarefy::Scene;
+use rarefy::backend::opencl::OpenClBackend;
+use rarefy::backend::twin::TwinBackend;
+use rarefy::backend::{Backend, BufferSizes, FrameBuffer};
+use rarefy::builtin;
+use rarefy::camera::frame_params;
+use rarefy::kdtree::{BuildOptions, KdTree};
+use rarefy::layout::*;
+use rarefy::opencl::{OpenOptions, open_with};
+use rarefy::options::{Mode, RenderOptions};
+use rarefy::pipeline::{self, PixelCounts};
+use rarefy::scene::{Object, Surface, Texture};
+use rarefy::scene_buffers::{SceneBuffers, Shading};
+use rarefy::twin::planes::plane_index;
+
+/// A test that finds no OpenCL fails, unless this variable says `none`.
+pub const WITHOUT_OPENCL: &str = "RAREFY_TEST_OPENCL";
+
+/// Whether the tests that need OpenCL are waived; says so.
+pub fn no_opencl() -> bool {
+    let none = std::env::var(WITHOUT_OPENCL).is_ok_and(|value| value == "none");
+    if none {
+        println!("skipped: {WITHOUT_OPENCL}=none");
+    }
+    none
+}
+
+/// A scene with its buffers.
+pub struct Prepared {
+    /// The scene.
+    pub scene: Scene,
+    /// What is uploaded of it.
+    pub buffers: Arc<SceneBuffers>,
+}
+
+impl Prepared {
+    /// `scene`, by the rules of `shading`.
+    pub fn new(scene: Scene, shading: Shading) -> Self {
+        let tree = KdTree::build(&scene.positions, &scene.triangles, &BuildOptions::default(), &|_| ()).unwrap();
+        let buffers = Arc::new(SceneBuffers::new(&scene, tree, shading).unwrap());
+        Prepared { scene, buffers }
+    }
+
+    /// A built-in scene, or [`zoo`].
+    pub fn named(name: &str) -> Self {
+        let scene = if name == "zoo" { zoo() } else { builtin::to_scene(name).unwrap() };
+        Prepared::new(scene, Shading::Full)
+    }
+
+    /// The CPU twin with this scene.
+    pub fn twin(&self) -> TwinBackend {
+        TwinBackend::new(Arc::clone(&self.buffers))
+    }
+
+    /// An OpenCL device with this scene.
+    ///
+    /// # Panics
+    /// If there is none.
+    pub fn device(&self, strict: bool, open: &OpenOptions) -> OpenClBackend {
+        let door = open_with(open).unwrap_or_else(|error| panic!("{error} (or set {WITHOUT_OPENCL}=none)"));
+        OpenClBackend::new(door, &self.buffers, strict).unwrap()
+    }
+
+    /// Draws a frame as a renderer does, but leaves the buffers to be read.
+    ///
+    /// # Errors
+    /// Whatever the back end reports.
+    pub fn draw(&self, backend: &mut dyn Backend, options: &RenderOptions, counters: bool) -> rarefy::Result<Drawn> {
+        options.validate()?;
+        let full = options.mode == Mode::Full;
+        let block = if full { 1 } else { options.block };
+        let (width, height) = (options.width, options.height);
+        let frame = frame_params(&self.scene.view, &self.buffers, width, height, block, options.depth);
+        let sizes = BufferSizes::new(&frame, true, counters, backend.scan_group()).unwrap();
+        backend.begin(&frame, &sizes)?;
+        let counts = if full {
+            pipeline::full_frame(backend, &frame, true)?
+        } else {
+            pipeline::adaptive_frame(backend, &frame, options, self.scene.view.extent)?
+        };
+        let pixels = backend.read(FrameBuffer::Color, 0..sizes.color)?;
+        let planes = backend.read(FrameBuffer::Attributes, 0..sizes.attributes)?;
+        let at = |x, y| PLANE_CLASS * frame.plane_pitch + plane_index(&frame, x, y);
+        let classes = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+        let classes = classes.map(|(x, y)| planes[at(x, y) as usize]).collect();
+        Ok(Drawn { pixels, classes, counts })
+    }
+}
+
+/// A frame, to be compared.
+#[derive(Debug, PartialEq, Eq)]
+pub struct Drawn {
+    /// The picture, row-major.
+    pub pixels: Vec<u32>,
+    /// The class plane, row-major.
+    pub classes: Vec<u32>,
+    /// Pixels by class.
+    pub counts: PixelCounts,
+}
+
+impl Drawn {
+    /// Pixels with a channel that is more than `most` apart.
+    pub fn pixels_apart(&self, other: &Drawn, most: u8) -> usize {
+        let apart =
+            |(a, b): (&u32, &u32)| a.to_le_bytes().iter().zip(b.to_le_bytes()).any(|(&x, y)| x.abs_diff(y) > most);
+        self.pixels.iter().zip(&other.pixels).filter(|&pair| apart(pair)).count()
+    }
+
+    /// Pixels whose class or fail mask differs.
+    pub fn classes_apart(&self, other: &Drawn) -> usize {
+        self.classes.iter().zip(&other.classes).filter(|(a, b)| a != b).count()
+    }
+}
+
+/// The built-in spheres with everything else that a kernel can meet: the clay sphere full of holes, its floor there
+/// twice (two objects, equal distances), a sphere of thin glass, and shadow bits of three lights.
+pub fn zoo() -> Scene {
+    let mut scene = builtin::to_scene("spheres").unwrap();
+    let find = |scene: &Scene, name: &str| scene.materials.iter().position(|m| m.name == name).unwrap();
+    // Holes: a checkerboard of opacity.
+    let texels = (0..64u32).map(|i| if (i / 8 + i) % 2 == 0 { 0xff40_80c0 } else { 0x0040_80c0 }).collect();
+    scene.textures.push(Texture { name: "holes".into(), width: 8, height: 8, texels });
+    let holes = scene.textures.len() as u32 - 1;
+    let clay = find(&scene, "clay");
+    scene.materials[clay].cutout_texture = Some(holes);
+    scene.materials[clay].diffuse_texture = Some(holes);
+    // The floor once more, as another object in another material.
+    let floor = find(&scene, "floor") as u32;
+    scene.objects.push(Object { name: "floor-again".into(), material: clay as u32 });
+    let again = scene.objects.len() as u32 - 1;
+    for id in 0..scene.triangles.len() {
+        if scene.objects[scene.triangle_objects[id] as usize].material == floor {
+            scene.triangles.push(scene.triangles[id]);
+            scene.corner_normals.push(scene.corner_normals[id]);
+            scene.corner_texcoords.push(scene.corner_texcoords[id]);
+            scene.triangle_objects.push(again);
+        }
+    }
+    // A copy of the glass sphere, moved to the front, of thin glass.
+    let glass = find(&scene, "glass");
+    let thin =
+        rarefy::scene::Material { name: "thin".into(), surface: Surface::ThinGlass, ..scene.materials[glass].clone() };
+    scene.materials.push(thin);
+    scene.objects.push(Object { name: "bubble".into(), material: scene.materials.len() as u32 - 1 });
+    let bubble = scene.objects.len() as u32 - 1;
+    for id in 0..scene.triangles.len() {
+        if scene.objects[scene.triangle_objects[id] as usize].material == glass as u32 {
+            let corners = scene.triangles[id].map(|i| {
+                scene.positions.push(scene.positions[i as usize] * 0.5 + glam::Vec3::new(-1.0, 0.3, 2.6));
+                scene.positions.len() as u32 - 1
+            });
+            scene.triangles.push(corners);
+            scene.corner_normals.push(scene.corner_normals[id]);
+            scene.corner_texcoords.push(scene.corner_texcoords[id]);
+            scene.triangle_objects.push(bubble);
+        }
+    }
+    let mut light = scene.view.lights[0];
+    light.position = glam::Vec3::new(0.0, 3.0, -4.0);
+    scene.view.lights.push(light);
+    scene
+}

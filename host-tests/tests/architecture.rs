@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! The shape of the source tree: data and modules point one way, documents name what exists, files stay small.
+#![allow(clippy::unwrap_used, missing_docs)]
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+use rarefy_host_tests::command::root;
+
+/// The modules of the library in layers: a module may use those of its own layer and of the layers before.
+const LAYERS: &[&[&str]] = &[
+    &["error", "math"],
+    &["scene"],
+    &["kdtree"],
+    &["layout"],
+    &["scene_buffers", "camera", "picture", "metrics", "builtin", "options"],
+    &["stage", "kernels", "twin"],
+    &["opencl", "profiles"],
+    &["backend"],
+    &["pipeline"],
+    &["frame", "fallback"],
+    &["renderer"],
+    &["compare", "layers", "report", "selftest"],
+];
+
+fn layer(module: &str) -> Option<usize> {
+    LAYERS.iter().position(|modules| modules.contains(&module))
+}
+
+fn files_below(folder: &Path, extensions: &[&str], found: &mut Vec<PathBuf>) {
+    for entry in folder.read_dir().unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            files_below(&path, extensions, found);
+        } else if path.extension().and_then(|e| e.to_str()).is_some_and(|e| extensions.contains(&e)) {
+            found.push(path);
+        }
+    }
+}
+
+fn sources(folder: &str, extensions: &[&str]) -> Vec<(String, String)> {
+    let mut found = Vec::new();
+    let folder = root().join(folder);
+    if folder.is_dir() {
+        files_below(&folder, extensions, &mut found);
+    }
+    found.sort();
+    let name = |path: &PathBuf| path.strip_prefix(root()).unwrap().to_str().unwrap().to_owned();
+    found.iter().map(|path| (name(path), std::fs::read_to_string(path).unwrap())).collect()
+}
+
+/// The top-level modules that `text` names as `crate::module`.
+fn used_modules(text: &str) -> BTreeSet<String> {
+    let mut used = BTreeSet::new();
+    for line in text.lines().filter(|l| !l.trim_start().starts_with("//")) {
+        for (at, _) in line.match_indices("crate::") {
+            if line[..at].ends_with(|c: char| c.is_alphanumeric() || c == '_' || c == '$') {
+                continue;
+            }
+            let rest = &line[at + "crate::".len()..];
+            let names = rest.strip_prefix('{').map_or(rest, |list| list.split('}').next().unwrap());
+            let many = rest.starts_with('{');
+            for part in names.split(',') {
+                let name: String = part.trim().chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
+                used.insert(name);
+                if !many {
+                    break;
+                }
+            }
+        }
+    }
+    used
+}
+
+/// Uses that point the wrong way, as `file: module`.
+fn wrong_way(file: &str, text: &str) -> Vec<String> {
+    // Tests may use what they like: they stand outside.
+    let text = text.split("#[cfg(test)]").next().unwrap();
+    let module = file.strip_prefix("src/").unwrap().split(['/', '.']).next().unwrap();
+    let Some(own) = layer(module) else { return Vec::new() };
+    let backwards = |used: &String| layer(used).is_some_and(|theirs| theirs > own);
+    used_modules(text).into_iter().filter(backwards).map(|used| format!("{file} uses crate::{used}")).collect()
+}
+
+#[test]
+fn modules_use_only_what_comes_before_them() {
+    let mut wrong = Vec::new();
+    for (file, text) in sources("src", &["rs"]) {
+        let module = file.strip_prefix("src/").unwrap().split(['/', '.']).next().unwrap().to_owned();
+        let outside = ["lib", "main", "cli"].contains(&module.as_str());
+        assert!(outside || layer(&module).is_some(), "{file}: give `{module}` a place in LAYERS");
+        wrong.extend(wrong_way(&file, &text));
+        // The command is a user of the library, and its only one that knows the terminal.
+        assert!(outside || !text.contains("clap::") && !text.contains("indicatif::"), "{file} knows the command line");
+        assert!(file.starts_with("src/opencl/") || !text.contains("opencl3::"), "{file} goes round the door");
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    // The check can fail.
+    assert_eq!(wrong_way("src/scene/load.rs", "use crate::renderer::Renderer;").len(), 1);
+    assert_eq!(wrong_way("src/scene/load.rs", "use crate::{error, backend::twin};").len(), 1);
+    assert!(wrong_way("src/renderer.rs", "use crate::scene::Scene;").is_empty());
+}
+
+/// `NAME` and the like; file names in capitals, such as `README.md`, lie outside the folders that are looked for.
+fn is_placeholder(word: &str) -> bool {
+    !word.is_empty() && word.chars().all(|c| c.is_ascii_uppercase())
+}
+
+/// Words of a document that look like paths within the repository.
+fn named_paths(text: &str) -> Vec<String> {
+    let tops = ["src/", "kernels/", "android/", "host-tests/", "scenes/", ".ci/", "docs/"];
+    let separators = |c: char| c.is_whitespace() || "`()[]|,;\"<>".contains(c);
+    let words = text.split(separators).map(|w| w.trim_end_matches(['.', ':', ')']).trim_start_matches("./"));
+    words
+        .filter(|w| tops.iter().any(|t| w.starts_with(t)))
+        // Patterns and place-holders (`*`, `NAME`) are not paths.
+        .filter(|w| !w.contains(['*', '{', '$', '=']) && !w.split(['/', '-', '.']).any(is_placeholder))
+        .map(|w| w.split(['#', ':']).next().unwrap().trim_end_matches('/').to_owned())
+        .filter(|w| !w.is_empty())
+        .collect()
+}
+
+#[test]
+fn every_path_that_the_documents_name_exists() {
+    for document in ["README.md", "ARCHITECTURE.md", "CONTRIBUTING.md"] {
+        // Documents that are not written yet name nothing.
+        let Ok(text) = std::fs::read_to_string(root().join(document)) else { continue };
+        for path in named_paths(&text) {
+            assert!(root().join(&path).exists(), "{document} names {path}, which is not there");
+        }
+    }
+    assert_eq!(named_paths("see `src/lib.rs` and kernels/step1.cl."), ["src/lib.rs", "kernels/step1.cl"]);
+}
+
+#[test]
+fn every_source_file_has_its_licence_and_stays_small() {
+    const LICENCE: &str = "SPDX-License-Identifier: MIT OR Apache-2.0";
+    let all = ["src", "kernels", "host-tests", "android"]
+        .map(|f| sources(f, &["rs", "cl", "clh", "h", "toml", "sh", "java"]));
+    let mut count = 0;
+    for (file, text) in all.concat().iter().filter(|(file, _)| !file.contains("/target/")) {
+        let head: Vec<&str> = text.lines().take(2).collect();
+        assert!(head.iter().any(|line| line.contains(LICENCE)), "{file} does not begin with `{LICENCE}`");
+        let lines = text.lines().count();
+        let bounded = file.starts_with("src/") || file.starts_with("kernels/");
+        assert!(!bounded || lines <= 600, "{file} has {lines} lines; 600 is the most");
+        count += 1;
+    }
+    assert!(count > 80, "only {count} files were looked at");
+}

@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Negative controls of the parity tests: each row breaks one line of a kernel, and the comparison of that kernel with
+//! its twin must see it.
+//!
+//! Frames are tiny and only the stage in question runs on the device, so that a mutant costs one small program.
+#![allow(clippy::unwrap_used, missing_docs)]
+
+use std::collections::{BTreeSet, HashMap};
+use std::path::Path;
+
+use rarefy::backend::parity::{KernelParity, ParityBackend};
+use rarefy::kernels::{FILES, Mutation};
+use rarefy::opencl::{CacheFolder, OpenOptions};
+use rarefy::options::{CorrectionMethod, RenderOptions};
+use rarefy::renderer::RendererOptions;
+use rarefy::selftest;
+use rarefy::stage::{Kernel, Stage};
+use rarefy_host_tests::frames::{Prepared, no_opencl};
+
+/// The frame that a mutant is drawn in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+enum Shot {
+    /// Holes, glass, thin glass, a mirror, equal distances, three lights; counting.
+    Zoo,
+    /// A closed room with a mirror and a texture that repeats; counting.
+    Room,
+    /// Thin rods and their shadows.
+    Rods,
+    /// [`Shot::Rods`], corrected by sweeps.
+    RodsSwept,
+    /// Large enough for scans of two levels.
+    Large,
+    /// [`Shot::Zoo`] with the strictest tolerances.
+    Strictest,
+}
+
+impl Shot {
+    fn scene(self) -> &'static str {
+        match self {
+            Shot::Zoo | Shot::Strictest => "zoo",
+            Shot::Room => "mirror-room",
+            Shot::Rods | Shot::RodsSwept | Shot::Large => "rods",
+        }
+    }
+
+    fn options(self) -> RenderOptions {
+        let mut options = RenderOptions { width: 50, height: 38, ..RenderOptions::default() };
+        match self {
+            Shot::Large => (options.width, options.height) = (210, 150),
+            Shot::Rods | Shot::RodsSwept => (options.width, options.height) = (100, 75),
+            Shot::Strictest => options.tolerances.t_pos = 0.0,
+            Shot::Zoo | Shot::Room => {}
+        }
+        if self == Shot::RodsSwept {
+            options.correction_method = CorrectionMethod::Sweeps;
+        }
+        options
+    }
+
+    fn counters(self) -> bool {
+        matches!(self, Shot::Zoo | Shot::Room)
+    }
+}
+
+/// A broken line: file, text, its replacement, the frame that shows it, the kernel that must be caught.
+type Mutant = (&'static str, &'static str, &'static str, Shot, Kernel);
+
+const SCAN_ONE_SHORT: &str = "StepParams s = step; s.item_count -= 1u; pack_scan(&s, sums, scratch);";
+const SCAN: &str = "pack_scan(&step, sums, scratch);";
+const ENTRY: &str = "list[step.list_offset + item]";
+const EVEN_ENTRY: &str = "list[step.list_offset + (item & ~1u)]";
+
+/// Each entry point on its own.
+#[rustfmt::skip]
+const ENTRY_POINTS: &[Mutant] = &[
+    ("step1.cl", "step.step_x * gx", "step.step_x * (gx & ~1u)", Shot::Zoo, Kernel::Step1),
+    ("step1.cl", "gy >= step.grid_height", "gy + 1u >= step.grid_height", Shot::Zoo, Kernel::Step1),
+    ("step2a.cl", "step.step_y * gy", "step.step_y * (gy & ~1u)", Shot::Zoo, Kernel::Step2a),
+    ("step3a.cl", "step.step_x * gx", "step.step_x * (gx & ~1u)", Shot::Zoo, Kernel::Step3a),
+    ("step2b.cl", "chunk * 32u < step.item_count", "chunk * 64u < step.item_count", Shot::Zoo, Kernel::Step2bCount),
+    ("step2b.cl", SCAN, SCAN_ONE_SHORT, Shot::Zoo, Kernel::Step2bScan),
+    ("step2b.cl", "if (chunk < chunk_count)", "if (chunk < chunk_count / 2u)", Shot::Zoo, Kernel::Step2bScatter),
+    ("step3b.cl", "chunk * 32u < step.item_count", "chunk * 64u < step.item_count", Shot::Zoo, Kernel::Step3bCount),
+    ("step3b.cl", SCAN, SCAN_ONE_SHORT, Shot::Zoo, Kernel::Step3bScan),
+    ("step3b.cl", "if (chunk < chunk_count)", "if (chunk < chunk_count / 2u)", Shot::Zoo, Kernel::Step3bScatter),
+    ("step2c.cl", ENTRY, EVEN_ENTRY, Shot::Zoo, Kernel::Step2c),
+    ("step2c.cl", "CLASS_TRACED", "CLASS_BASE", Shot::Zoo, Kernel::Step2c),
+    ("step3c.cl", ENTRY, EVEN_ENTRY, Shot::Zoo, Kernel::Step3c),
+    ("step3c.cl", "pixel & 0xffffu", "pixel & 0xfffeu", Shot::Zoo, Kernel::Step3c),
+    ("step4.cl", "atomic_min(", "atomic_max(", Shot::Rods, Kernel::Step4Mark),
+    ("step4.cl", "chunk * 32u < step.item_count", "chunk * 64u < step.item_count", Shot::Rods, Kernel::Step4Count),
+    ("step4.cl", SCAN, SCAN_ONE_SHORT, Shot::Rods, Kernel::Step4Scan),
+    ("step4.cl", "if (chunk < chunk_count)", "if (chunk < chunk_count / 2u)", Shot::Rods, Kernel::Step4Scatter),
+    ("step4.cl", ENTRY, EVEN_ENTRY, Shot::Rods, Kernel::Step4Trace),
+    ("step4.cl", "if (k == length) continue;", "if (k >= length) continue;", Shot::RodsSwept, Kernel::Step4Sweep),
+];
+
+/// What spreads in step 4.
+#[rustfmt::skip]
+const CORRECTION: &[Mutant] = &[
+    ("step4.cl", " && from_class != CLASS_CORRECTED", "", Shot::Rods, Kernel::Step4Mark),
+    ("step4.cl", "attributes[PLANE_OBJECT * pitch + at] != ", "attributes[PLANE_OBJECT * pitch + at] == ", Shot::Rods, Kernel::Step4Mark),
+    ("step4.cl", "(step->flags & STEP_COMPARE_SHADOW)", "(step->flags & STEP_GCOL_LINEAR)", Shot::Rods, Kernel::Step4Mark),
+    ("step4.cl", "case 0u: return x > 0u ?", "case 0u: return x > 25u ?", Shot::Rods, Kernel::Step4Mark),
+    ("step4.cl", "case 1u: return x + 1u < frame->width ?", "case 1u: return x + 25u < frame->width ?", Shot::Rods, Kernel::Step4Mark),
+    ("step4.cl", "case 2u: return y > 0u ?", "case 2u: return y > 19u ?", Shot::Rods, Kernel::Step4Mark),
+    ("step4.cl", "default: return y + 1u < frame->height ?", "default: return y + 19u < frame->height ?", Shot::Rods, Kernel::Step4Mark),
+    ("step4.cl", "+ pixel_plane_index(frame, pixel)] == i", "+ pixel_plane_index(frame, pixel)] != i", Shot::Rods, Kernel::Step4Count),
+    ("common/trace.clh", "changed ? CLASS_CORRECTED : CLASS_CONFIRMED", "CLASS_CORRECTED", Shot::Rods, Kernel::Step4Trace),
+    ("common/trace.clh", "out_attributes[PLANE_CLAIM * pitch + at] = NO_CLAIM", "out_attributes[PLANE_CLAIM * pitch + at] = 0u", Shot::Rods, Kernel::Step4Trace),
+    ("common/trace.clh", "pixel_class == CLASS_BASE ? 0u : out_attributes[PLANE_CLASS * pitch + at] & ~CLASS_MASK", "0u", Shot::Zoo, Kernel::Step2c),
+];
+
+/// The walk through the tree and the tests of triangles.
+#[rustfmt::skip]
+const TRAVERSAL: &[Mutant] = &[
+    ("common/kdtree.clh", "#define WIDEN_UP 1.0000005f", "#define WIDEN_UP 0.9f", Shot::Room, Kernel::Step1),
+    ("common/kdtree.clh", "#define WIDEN_DOWN 0.9999995f", "#define WIDEN_DOWN 1.1f", Shot::Room, Kernel::Step1),
+    ("common/kdtree.clh", "lower + sign[axis]", "lower + 1u - sign[axis]", Shot::Zoo, Kernel::Step1),
+    ("common/kdtree.clh", "if (depth == 0u || best.t < t_min)", "if (depth == 0u)", Shot::Zoo, Kernel::Step1),
+    ("common/kdtree.clh", "id < best.triangle", "id > best.triangle", Shot::Zoo, Kernel::Step1),
+    ("common/kdtree.clh", "u + v <= 1.0f", "u + v <= 1.1f", Shot::Room, Kernel::Step1),
+    ("common/kdtree.clh", ">> 24) < 128u", ">> 24) >= 128u", Shot::Zoo, Kernel::Step1),
+    ("common/kdtree.clh", "(!(bits & TRIANGLE_CUTOUT) || !is_hole(", "((bits & TRIANGLE_CUTOUT) || !is_hole(", Shot::Zoo, Kernel::Step1),
+    ("common/kdtree.clh", "if (!(as_uint(v0.w) & TRIANGLE_CUTOUT) ||", "if (1 ||", Shot::Zoo, Kernel::Step1),
+    ("common/kdtree.clh", "!(bits & TRIANGLE_NO_SHADOW)", "!(bits & 64u)", Shot::Zoo, Kernel::Step1),
+    ("common/kdtree.clh", "t < t_limit", "t < 2.0f * t_limit", Shot::Room, Kernel::Step1),
+    ("common/trace.clh", "COUNT(shadow_rays)", "COUNT(refraction_rays)", Shot::Zoo, Kernel::Step1),
+    ("common/attributes.clh", "] = work->triangle_tests", "] = work->traversal_steps", Shot::Zoo, Kernel::Step1),
+];
+
+/// Surface points, shadows, the ray tree.
+#[rustfmt::skip]
+const RAY_TREE: &[Mutant] = &[
+    ("common/attributes.clh", "((float)(2u * y + 1u))", "((float)(2u * y))", Shot::Zoo, Kernel::Step1),
+    ("common/attributes.clh", "((y & mask) << shift) + (x & mask)", "((x & mask) << shift) + (y & mask)", Shot::Zoo, Kernel::Step2c),
+    ("common/attributes.clh", "= as_uint(a->normal.y)", "= as_uint(a->normal.x)", Shot::Zoo, Kernel::Step3c),
+    ("common/trace.clh", "dot3(g, d) > 0.0f ? -g : g", "g", Shot::Zoo, Kernel::Step1),
+    ("common/trace.clh", "dot3(unit, p.geometric_normal) < 0.0f ? -unit : unit", "unit", Shot::Zoo, Kernel::Step1),
+    ("common/trace.clh", "float3 o = p->position + p->geometric_normal * frame->epsilon", "float3 o = p->position", Shot::Room, Kernel::Step1),
+    ("common/trace.clh", "dot3(p->normal, to_light) > 0.0f", "dot3(p->normal, to_light) > -1.0e9f", Shot::Zoo, Kernel::Step1),
+    ("common/trace.clh", "shadowed ? 1u << i", "shadowed ? 1u << (i ^ 1u)", Shot::Zoo, Kernel::Step1),
+    ("common/trace.clh", "(2.0f * dot3(d, p->normal))", "(1.9f * dot3(d, p->normal))", Shot::Room, Kernel::Step1),
+    ("common/trace.clh", "c->weight * m->reflectance.xyz", "c->weight", Shot::Room, Kernel::Step1),
+    ("common/trace.clh", "(cos_i - eta * cos_t)", "(cos_i - cos_t)", Shot::Zoo, Kernel::Step1),
+    ("common/trace.clh", "sin2_t >= 1.0f", "sin2_t >= 0.5f", Shot::Zoo, Kernel::Step1),
+    ("common/trace.clh", "c->inside && !thin ? ior : 1.0f / ior", "1.0f / ior", Shot::Zoo, Kernel::Step1),
+    ("common/trace.clh", "thin ? c->direction : refracted", "refracted", Shot::Zoo, Kernel::Step1),
+    ("common/trace.clh", "thin ? c->inside : !c->inside", "c->inside", Shot::Zoo, Kernel::Step1),
+    ("common/trace.clh", "m->transmission.xyz * (1.0f - f)", "m->transmission.xyz", Shot::Zoo, Kernel::Step1),
+    ("common/trace.clh", "p->position - p->geometric_normal * frame->epsilon", "p->position + p->geometric_normal * frame->epsilon", Shot::Zoo, Kernel::Step1),
+    ("common/trace.clh", "< WEIGHT_CUTOFF", "< 0.2f", Shot::Zoo, Kernel::Step1),
+    ("common/trace.clh", "k < frame->depth_limit", "k + 1u < frame->depth_limit", Shot::Zoo, Kernel::Step1),
+    ("common/trace.clh", "sum + c.weight * frame->background.xyz", "sum", Shot::Zoo, Kernel::Step1),
+    ("common/trace.clh", "surface == SURFACE_MIRROR ? 1u : 2u", "1u", Shot::Zoo, Kernel::Step1),
+    ("common/trace.clh", "a.gcol = gather_secondary", "a.position = gather_secondary", Shot::Zoo, Kernel::Step4Trace),
+];
+
+/// Textures, lighting, the encoding of colours, the shared maths.
+#[rustfmt::skip]
+const SHADING: &[Mutant] = &[
+    ("common/shade.clh", "a + (b - a) * wx", "a + (b - a) * wy", Shot::Room, Kernel::Step1),
+    ("common/shade.clh", "ix < 0 ? width - 1u", "ix < 0 ? 0u", Shot::Zoo, Kernel::Step1),
+    ("common/shade.clh", "(1.0f - t) * (float)height", "t * (float)height", Shot::Zoo, Kernel::Step1),
+    ("common/shade.clh", "m->diffuse.xyz * own", "m->diffuse.xyz", Shot::Room, Kernel::Step1),
+    ("common/shade.clh", "kd * frame->ambient.xyz", "kd", Shot::Rods, Kernel::Step1),
+    ("common/shade.clh", "(shadow_bits >> i) & 1u", "(shadow_bits >> i) & 2u", Shot::Rods, Kernel::Step1),
+    ("common/shade.clh", "radiance * inverse_d2", "radiance", Shot::Rods, Kernel::Step1),
+    ("common/shade.clh", "normalize3(l + view)", "normalize3(l - view)", Shot::Zoo, Kernel::Step1),
+    ("common/shade.clh", "TABLE_SRGB_THRESHOLD + guess + 1u", "TABLE_SRGB_THRESHOLD + guess", Shot::Rods, Kernel::Step1),
+    ("common/shade.clh", "srgb_byte(tables, linear.y) << 8", "srgb_byte(tables, linear.x) << 8", Shot::Rods, Kernel::Step1),
+    ("common/math.clh", "y * log2_poly(x)", "0.9f * y * log2_poly(x)", Shot::Zoo, Kernel::Step1),
+    ("common/math.clh", "0x3f3504f3u", "0x3f800000u", Shot::Zoo, Kernel::Step1),
+    ("common/math.clh", "f * (0.6931472f +", "f * (0.6f +", Shot::Zoo, Kernel::Step1),
+    ("common/math.clh", "x >= 0.0f ? x - fold : x + fold", "x + fold", Shot::Zoo, Kernel::Step1),
+    ("common/math.clh", "f = x - floor(x)", "f = ceil(x) - x", Shot::Zoo, Kernel::Step1),
+];
+
+/// The seven tests and the interpolation.
+#[rustfmt::skip]
+const SIMILARITY: &[Mutant] = &[
+    ("common/similarity.clh", "return FAIL_G1 & step->tests", "return FAIL_G2 & step->tests", Shot::Zoo, Kernel::Step2a),
+    ("common/similarity.clh", "!(distance <= step->t_pos)", "!(distance <= 0.3f * step->t_pos)", Shot::Zoo, Kernel::Step2a),
+    ("common/similarity.clh", "? 0u : FAIL_G2 & step->tests", "? 0u : 0u", Shot::Strictest, Kernel::Step3a),
+    ("common/similarity.clh", ">= step->t_norm", ">= 0.5f * step->t_norm", Shot::Zoo, Kernel::Step2a),
+    ("common/similarity.clh", "step->t_conv * distance", "0.0f * distance", Shot::Zoo, Kernel::Step2a),
+    ("common/similarity.clh", "!= NO_TEXTURE", "== NO_TEXTURE", Shot::Room, Kernel::Step3a),
+    ("common/similarity.clh", "a < t_tex && b > 1.0f - t_tex", "a < t_tex && b < 1.0f - t_tex", Shot::Room, Kernel::Step2a),
+    ("common/similarity.clh", "a->shadow_bits != b->shadow_bits", "(a->shadow_bits ^ b->shadow_bits) > 1u", Shot::Zoo, Kernel::Step2a),
+    ("common/similarity.clh", "<= step->t_gcol", "<= 8.0f * step->t_gcol", Shot::Zoo, Kernel::Step3a),
+    ("common/similarity.clh", "!(flags & STEP_GCOL_LINEAR)", "(flags & STEP_GCOL_LINEAR)", Shot::Zoo, Kernel::Step2a),
+    ("common/similarity.clh", "wa = zb / (za + zb)", "wa = za / (za + zb)", Shot::Zoo, Kernel::Step3a),
+    ("common/similarity.clh", "m.normal = normalize3(a->normal * wa + b->normal * wb)", "m.normal = a->normal * wa + b->normal * wb", Shot::Zoo, Kernel::Step2a),
+    ("common/similarity.clh", "m.gcol = a->gcol * wa + b->gcol * wb", "m.gcol = a->gcol", Shot::Zoo, Kernel::Step3a),
+    ("common/similarity.clh", "x + step->reference_dx >= frame->width", "x + step->reference_dx > frame->width", Shot::Zoo, Kernel::Step2a),
+    ("common/similarity.clh", "attributes[PLANE_CLAIM * pitch + at] = NO_CLAIM", "attributes[PLANE_CLAIM * pitch + at] = 0u", Shot::Zoo, Kernel::Step3a),
+    ("common/attributes.clh", "a.s = as_float(attributes[PLANE_TEXCOORD_S", "a.s = as_float(attributes[PLANE_TEXCOORD_T", Shot::Room, Kernel::Step2a),
+];
+
+/// Packing.
+#[rustfmt::skip]
+const PACKING: &[Mutant] = &[
+    ("common/pack.clh", "k < 32u &&", "k < 31u &&", Shot::Zoo, Kernel::Step2bCount),
+    ("common/pack.clh", "popcount(mask)", "popcount(mask >> 1)", Shot::Zoo, Kernel::Step3bCount),
+    ("common/pack.clh", "lane >= stride ?", "lane > stride ?", Shot::Strictest, Kernel::Step2bScan),
+    ("common/pack.clh", "scratch[from + lane] - value", "scratch[from + lane]", Shot::Zoo, Kernel::Step3bScan),
+    ("common/pack.clh", "if (lane == lanes - 1u)", "if (lane == 0u)", Shot::Rods, Kernel::Step4Scan),
+    ("common/pack.clh", "base += sums[offset + element]", "base = sums[offset + element]", Shot::Large, Kernel::Step2bScatter),
+    ("common/pack.clh", "offset += count", "offset += 0u", Shot::Large, Kernel::Step2bScatter),
+    ("common/pack_order.clh", "within / PACK_TILE_SIDE", "within % PACK_TILE_SIDE", Shot::Zoo, Kernel::Step2bScatter),
+    ("common/pack_order.clh", "== CLASS_PENDING", "!= CLASS_PENDING", Shot::Zoo, Kernel::Step3bCount),
+];
+
+/// A cache of its own, kept from run to run: mutants shall not crowd the user's.
+fn open() -> OpenOptions {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("mutants");
+    OpenOptions { cache: CacheFolder::At(folder), ..OpenOptions::default() }
+}
+
+fn parity(prepared: &Prepared, shot: Shot, stage: Stage, mutation: Option<Mutation>) -> Vec<KernelParity> {
+    let mut device = prepared.device(true, &open());
+    device.mutate(mutation);
+    let mut parity = ParityBackend::new(prepared.twin(), &mut device).only(stage);
+    prepared.draw(&mut parity, &shot.options(), shot.counters()).unwrap();
+    parity.results
+}
+
+#[test]
+fn every_broken_line_is_caught() {
+    if no_opencl() {
+        return;
+    }
+    let mutants: Vec<&Mutant> =
+        [ENTRY_POINTS, CORRECTION, TRAVERSAL, RAY_TREE, SHADING, SIMILARITY, PACKING].into_iter().flatten().collect();
+    let mut scenes: HashMap<&str, Prepared> = HashMap::new();
+    let mut sound: BTreeSet<String> = BTreeSet::new();
+    let mut missed = Vec::new();
+    println!("{:15} {:24} caught by", "kernel", "file");
+    for &&(file, from, to, shot, kernel) in &mutants {
+        let Some((_, text)) = FILES.iter().find(|(name, _)| *name == file).filter(|(_, text)| text.contains(from))
+        else {
+            missed.push(format!("{file}: `{from}` is not there any more: write the mutant anew"));
+            continue;
+        };
+        assert_ne!(*text, text.replacen(from, to, 1));
+        let prepared = scenes.entry(shot.scene()).or_insert_with(|| Prepared::named(shot.scene()));
+        // What is caught must come from the mutation.
+        if sound.insert(format!("{shot:?} {:?}", kernel.stage())) {
+            let results = parity(prepared, shot, kernel.stage(), None);
+            assert!(results.iter().all(|r| r.different == 0), "unbroken kernels differ: {shot:?} {results:#?}");
+        }
+        let mutation = Mutation { file: file.into(), from: from.into(), to: to.into() };
+        let results = parity(prepared, shot, kernel.stage(), Some(mutation));
+        let caught: Vec<&KernelParity> = results.iter().filter(|r| r.different > 0).collect();
+        let by = caught.iter().map(|r| format!("{} ({} words)", r.kernel.name(), r.different)).collect::<Vec<_>>();
+        println!("{:15} {file:24} {}\n      {from}\n   -> {to}", kernel.name(), by.join(", "));
+        if !caught.iter().any(|r| r.kernel == kernel) {
+            missed.push(format!("{file}: `{from}` -> `{to}` in {shot:?}: {} does not show it", kernel.name()));
+        }
+    }
+    assert!(missed.is_empty(), "{} of {} mutants live:\n{}", missed.len(), mutants.len(), missed.join("\n"));
+    let covered: BTreeSet<Kernel> = ENTRY_POINTS.iter().map(|m| m.4).collect();
+    assert_eq!(covered, Kernel::ALL.into_iter().collect(), "a kernel without a mutant of its own");
+    println!("{} mutants, all caught", mutants.len());
+}
+
+#[test]
+fn the_self_test_names_every_stage_that_is_broken() {
+    if no_opencl() {
+        return;
+    }
+    for stage in Stage::ALL {
+        let mutation = Some(selftest::breaking_mutation(stage));
+        let result = selftest::run(&RendererOptions { mutation, ..RendererOptions::default() }).unwrap();
+        let wrong: Vec<&str> = result.checks.iter().filter(|c| !c.passed).map(|c| c.name.as_str()).collect();
+        assert!(!wrong.is_empty(), "{}: passes", stage.name());
+        assert!(wrong.iter().all(|name| name.starts_with(stage.name())), "{}: {wrong:?}", stage.name());
+        let error = result.require().unwrap_err().to_string();
+        assert!(error.contains(&format!(": {}", stage.name())), "{error}");
+    }
+}

@@ -1,0 +1,371 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Kernels against their CPU twins: strict builds launch by launch and bit for bit, fast builds within bounds.
+#![allow(clippy::unwrap_used, missing_docs)]
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use rarefy::Scene;
+use rarefy::backend::parity::{KernelParity, ParityBackend};
+use rarefy::backend::twin::TwinBackend;
+use rarefy::backend::{Backend, BackendInfo, BufferSizes, FrameBuffer};
+use rarefy::builtin;
+use rarefy::layout::{FrameParams, StepParams, expected_probe};
+use rarefy::opencl::{OpenOptions, Profile};
+use rarefy::options::{Correction, CorrectionMethod, Interpolation, Mode, RenderOptions};
+use rarefy::scene_buffers::Shading;
+use rarefy::stage::Kernel;
+use rarefy_host_tests::frames::{Prepared, no_opencl, zoo};
+
+fn sized(width: u32, height: u32) -> RenderOptions {
+    RenderOptions { width, height, ..RenderOptions::default() }
+}
+
+fn full(options: &RenderOptions) -> RenderOptions {
+    RenderOptions { mode: Mode::Full, ..options.clone() }
+}
+
+/// Draws `frames` launch by launch on the twin and on `device`, each launch fed the twin's own inputs.
+fn compare(
+    prepared: &Prepared,
+    device: &mut dyn Backend,
+    frames: impl IntoIterator<Item = (RenderOptions, bool)>,
+) -> Vec<KernelParity> {
+    let mut parity = ParityBackend::new(prepared.twin(), device);
+    for (options, counters) in frames {
+        prepared.draw(&mut parity, &options, counters).unwrap();
+        let clean = parity.results.iter().all(|r| r.different == 0);
+        assert!(clean, "{}: {options:?}, counters {counters}: {:#?}", prepared.scene.name, differing(&parity.results));
+    }
+    parity.results
+}
+
+fn differing(results: &[KernelParity]) -> Vec<&KernelParity> {
+    results.iter().filter(|r| r.different > 0).collect()
+}
+
+/// Every combination of the options that choose between paths through the kernels.
+fn combinations(width: u32, height: u32) -> Vec<RenderOptions> {
+    let mut all = vec![full(&sized(width, height))];
+    for block in [2, 4] {
+        for correction in [Correction::Off, Correction::Object, Correction::ObjectAndShadow] {
+            for correction_method in [CorrectionMethod::Converged, CorrectionMethod::Sweeps] {
+                for interpolation in [Interpolation::Perspective, Interpolation::Plain] {
+                    for gcol_linear in [false, true] {
+                        if correction == Correction::Off && correction_method == CorrectionMethod::Sweeps {
+                            continue;
+                        }
+                        let options = RenderOptions {
+                            block,
+                            correction,
+                            correction_method,
+                            interpolation,
+                            gcol_linear,
+                            ..sized(width, height)
+                        };
+                        all.push(options);
+                    }
+                }
+            }
+        }
+    }
+    all
+}
+
+#[test]
+fn every_launch_of_every_kind_of_frame_equals_the_twin() {
+    if no_opencl() {
+        return;
+    }
+    let prepared = Prepared::named("zoo");
+    let mut device = prepared.device(true, &OpenOptions::default());
+    // Counting or not in turn: the flavours are two programs, and the options do not care.
+    let frames = combinations(50, 38).into_iter().enumerate().map(|(i, options)| (options, i % 2 == 0));
+    let results = compare(&prepared, &mut device, frames);
+    let launched: BTreeSet<&str> = results.iter().map(|r| r.kernel.name()).collect();
+    assert_eq!(launched, Kernel::ALL.iter().map(|k| k.name()).collect(), "not every kernel was compared");
+    assert!(results.iter().all(|r| r.words > 0));
+}
+
+#[test]
+fn frames_of_every_size_and_scene_equal_the_twin() {
+    if no_opencl() {
+        return;
+    }
+    for name in builtin::NAMES {
+        let prepared = Prepared::named(name);
+        let mut device = prepared.device(true, &OpenOptions::default());
+        let sizes = [(1, 1), (1, 7), (7, 1), (2, 2), (3, 5), (33, 17)];
+        let mut frames = Vec::new();
+        for (i, (width, height)) in sizes.into_iter().enumerate() {
+            for block in [2, 4] {
+                frames.push((RenderOptions { block, ..sized(width, height) }, i % 2 == 0));
+                let correction_method = CorrectionMethod::Sweeps;
+                frames.push((RenderOptions { block, correction_method, ..sized(width, height) }, false));
+            }
+            frames.push((full(&sized(width, height)), i % 2 == 1));
+        }
+        compare(&prepared, &mut device, frames);
+    }
+}
+
+#[test]
+fn large_frames_with_scans_of_several_levels_equal_the_twin() {
+    if no_opencl() {
+        return;
+    }
+    // 210x150 has 260 chunks of A1 items, more than a scan's work-group of 256.
+    let prepared = Prepared::named("cafe");
+    let mut device = prepared.device(true, &OpenOptions::default());
+    let four = RenderOptions { block: 4, ..sized(210, 150) };
+    let linear = RenderOptions { gcol_linear: true, interpolation: Interpolation::Plain, ..sized(210, 150) };
+    compare(&prepared, &mut device, [(sized(210, 150), false), (four, true), (linear, true)]);
+}
+
+#[test]
+fn scans_in_small_groups_equal_the_twin() {
+    if no_opencl() {
+        return;
+    }
+    let prepared = Prepared::named("rods");
+    let under = |group: u32| {
+        let limits = format!(
+            r#"{{"limits":{{"cl_kernel_work_group_size":{{"value":{group},"certainty":"inferred","source":"test"}}}}}}"#
+        );
+        let profile = Some(Profile::from_json("tight", &limits).unwrap());
+        prepared.device(true, &OpenOptions { profile, ..OpenOptions::default() })
+    };
+    for group in [2, 8] {
+        let mut device = under(group);
+        assert_eq!(device.scan_group(), group);
+        compare(&prepared, &mut device, [(sized(33, 17), false)]);
+    }
+    // A device whose kernels with barriers run in groups of one cannot pack: an error, not an endless scan.
+    let refused = prepared.draw(&mut under(1), &sized(33, 17), false).unwrap_err();
+    assert!(matches!(refused, rarefy::Error::LimitExceeded { .. }), "{refused}");
+}
+
+#[test]
+fn anchor_shading_equals_the_twin() {
+    if no_opencl() {
+        return;
+    }
+    for name in ["spheres", "mirror-room"] {
+        let prepared = Prepared::new(builtin::to_scene(name).unwrap(), Shading::Anchor);
+        let mut device = prepared.device(true, &OpenOptions::default());
+        let frames = [(full(&sized(50, 38)), true), (full(&sized(33, 17)), false), (sized(50, 38), false)];
+        compare(&prepared, &mut device, frames);
+    }
+}
+
+#[test]
+fn strictest_and_laxest_tolerances_equal_the_twin() {
+    if no_opencl() {
+        return;
+    }
+    let prepared = Prepared::named("zoo");
+    let mut device = prepared.device(true, &OpenOptions::default());
+    let with = |t_pos: f32, tests: u32| {
+        let mut options = sized(50, 38);
+        options.tolerances.t_pos = t_pos;
+        options.coarse_tolerances.t_pos = t_pos;
+        options.tests = tests;
+        (options, false)
+    };
+    compare(&prepared, &mut device, [with(0.0, rarefy::layout::FAIL_ALL), with(1.0e9, 0)]);
+    // With no test at all nothing but the border is traced, with the strictest one everything is.
+    let strict = prepared.draw(&mut device, &with(0.0, rarefy::layout::FAIL_ALL).0, false).unwrap();
+    assert_eq!(strict.counts.interpolated, 0);
+    assert_eq!(strict.pixels, prepared.draw(&mut prepared.twin(), &full(&sized(50, 38)), false).unwrap().pixels);
+}
+
+#[test]
+fn whole_strict_frames_equal_those_of_the_twin() {
+    if no_opencl() {
+        return;
+    }
+    for name in ["zoo", "mirror-room", "rods", "cafe"] {
+        let prepared = Prepared::named(name);
+        let mut device = prepared.device(true, &OpenOptions::default());
+        let sweeps = RenderOptions { correction_method: CorrectionMethod::Sweeps, ..sized(96, 64) };
+        let four = RenderOptions { block: 4, ..sized(96, 64) };
+        for options in [sized(96, 64), four, sweeps, full(&sized(96, 64))] {
+            let drawn = prepared.draw(&mut device, &options, false).unwrap();
+            assert!(drawn == prepared.draw(&mut prepared.twin(), &options, false).unwrap(), "{name}: {options:?}");
+        }
+    }
+}
+
+#[test]
+fn forced_slices_and_two_runs_give_the_same_picture() {
+    if no_opencl() {
+        return;
+    }
+    let prepared = Prepared::named("zoo");
+    for options in [sized(50, 38), full(&sized(50, 38)), RenderOptions { block: 4, ..sized(33, 17) }] {
+        let first = prepared.draw(&mut prepared.device(false, &OpenOptions::default()), &options, false).unwrap();
+        let mut again = prepared.device(false, &OpenOptions::default());
+        assert!(prepared.draw(&mut again, &options, false).unwrap() == first, "another device object: {options:?}");
+        assert!(prepared.draw(&mut again, &options, false).unwrap() == first, "a second frame: {options:?}");
+        for items in [1, 100] {
+            let open = OpenOptions { slice_items: Some(items), ..OpenOptions::default() };
+            let mut sliced = prepared.device(false, &open);
+            assert!(prepared.draw(&mut sliced, &options, false).unwrap() == first, "slices of {items}: {options:?}");
+            assert!(2 * sliced.door().enqueues() > again.door().enqueues(), "nothing was cut");
+        }
+        let twin = prepared.draw(&mut prepared.twin(), &options, false).unwrap();
+        assert!(prepared.draw(&mut prepared.twin(), &options, false).unwrap() == twin, "twin: {options:?}");
+    }
+}
+
+/// Full and adaptive frames of a fast build against the twin.
+fn fast_build_is_close(scene: Scene, side: u32) {
+    let prepared = Prepared::new(scene, Shading::Full);
+    let mut device = prepared.device(false, &OpenOptions::default());
+    let pixels = f64::from(side) * f64::from(side);
+    let options = full(&sized(side, side));
+    let ours = prepared.draw(&mut device, &options, false).unwrap();
+    let twin = prepared.draw(&mut prepared.twin(), &options, false).unwrap();
+    let apart = ours.pixels_apart(&twin, 1);
+    let options = sized(side, side);
+    let adaptive = prepared.draw(&mut device, &options, false).unwrap();
+    let adaptive_twin = prepared.draw(&mut prepared.twin(), &options, false).unwrap();
+    let classes = adaptive.classes_apart(&adaptive_twin);
+    let adaptive_apart = adaptive.pixels_apart(&adaptive_twin, 1);
+    println!(
+        "{} {side}x{side}: beyond 1/255: full {apart}, adaptive {adaptive_apart}; other classes {classes}",
+        prepared.scene.name
+    );
+    assert!(apart as f64 <= 1.0e-4 * pixels, "{apart} pixels beyond 1/255");
+    assert!(classes as f64 <= 1.0e-3 * pixels, "{classes} pixels in another class");
+    assert!(adaptive_apart as f64 <= 1.0e-3 * pixels, "{adaptive_apart} pixels of the adaptive frame beyond 1/255");
+}
+
+#[test]
+fn fast_builds_draw_the_built_in_scenes_within_one_step() {
+    if no_opencl() {
+        return;
+    }
+    for name in builtin::NAMES {
+        fast_build_is_close(builtin::to_scene(name).unwrap(), 256);
+    }
+    fast_build_is_close(zoo(), 256);
+}
+
+#[test]
+#[ignore = "long: six real scenes, on the device and on the twin"]
+fn real_scenes_are_drawn_alike() {
+    if no_opencl() {
+        return;
+    }
+    let folder = rarefy_host_tests::command::root().join("../shared/scenes");
+    if !folder.is_dir() {
+        println!("skipped: ../shared/scenes is not here");
+        return;
+    }
+    let mut scenes: Vec<_> = folder.read_dir().unwrap().map(|e| e.unwrap().path()).filter(|p| p.is_dir()).collect();
+    scenes.sort();
+    for path in scenes {
+        let load = |path: &Path| rarefy::scene::load(path, &|_, _| ()).unwrap();
+        let prepared = Prepared::new(load(&path), Shading::Full);
+        let mut device = prepared.device(true, &OpenOptions::default());
+        for options in [full(&sized(512, 512)), sized(512, 512), RenderOptions { block: 4, ..sized(512, 512) }] {
+            let drawn = prepared.draw(&mut device, &options, false).unwrap();
+            let twin = prepared.draw(&mut prepared.twin(), &options, false).unwrap();
+            assert!(drawn == twin, "{}: strict builds differ: {options:?}", path.display());
+        }
+        drop((prepared, device));
+        fast_build_is_close(load(&path), 512);
+    }
+}
+
+#[test]
+fn the_device_lays_structs_out_as_the_host_does() {
+    if no_opencl() {
+        return;
+    }
+    let prepared = Prepared::named("wall");
+    let mut device = prepared.device(true, &OpenOptions::default());
+    assert_eq!(device.probe().unwrap(), expected_probe());
+    // The comparison can fail.
+    let mutation = rarefy::kernels::Mutation {
+        file: "types.h".into(),
+        from: "  uint depth_limit;".into(),
+        to: "  uint inserted; uint depth_limit;".into(),
+    };
+    device.mutate(Some(mutation));
+    assert_ne!(device.probe().unwrap(), expected_probe());
+}
+
+/// A twin that changes the first word of `buffer` after each launch of `kernel`.
+struct Tampered {
+    inner: TwinBackend,
+    kernel: Kernel,
+    buffer: FrameBuffer,
+}
+
+impl Backend for Tampered {
+    fn info(&self) -> BackendInfo {
+        self.inner.info()
+    }
+    fn scan_group(&self) -> u32 {
+        self.inner.scan_group()
+    }
+    fn begin(&mut self, frame: &FrameParams, sizes: &BufferSizes) -> rarefy::Result<()> {
+        self.inner.begin(frame, sizes)
+    }
+    fn run(&mut self, kernel: Kernel, step: &StepParams) -> rarefy::Result<()> {
+        self.inner.run(kernel, step)?;
+        if kernel == self.kernel {
+            let first = self.inner.read(self.buffer, 0..1)?[0];
+            self.inner.write(self.buffer, &[first ^ 1])?;
+        }
+        Ok(())
+    }
+    fn read_sum(&mut self, at: u32) -> rarefy::Result<u32> {
+        self.inner.read_sum(at)
+    }
+    fn read(&mut self, buffer: FrameBuffer, range: std::ops::Range<usize>) -> rarefy::Result<Vec<u32>> {
+        self.inner.read(buffer, range)
+    }
+    fn write(&mut self, buffer: FrameBuffer, words: &[u32]) -> rarefy::Result<()> {
+        self.inner.write(buffer, words)
+    }
+    fn take_timings(&mut self) -> rarefy::Result<Vec<(Kernel, f64)>> {
+        self.inner.take_timings()
+    }
+    fn peak_bytes(&self) -> u64 {
+        self.inner.peak_bytes()
+    }
+}
+
+#[test]
+fn the_comparison_sees_one_changed_word_of_any_buffer() {
+    use FrameBuffer::*;
+    let prepared = Prepared::named("spheres");
+    let options = sized(33, 17);
+    compare(&prepared, &mut prepared.twin(), [(options.clone(), true)]);
+    for (kernel, buffer) in [
+        (Kernel::Step1, Attributes),
+        (Kernel::Step2a, Color),
+        (Kernel::Step2bCount, Masks),
+        (Kernel::Step2bScan, Sums),
+        (Kernel::Step3bScatter, List),
+        (Kernel::Step3c, Counters),
+    ] {
+        let mut device = Tampered { inner: prepared.twin(), kernel, buffer };
+        let mut parity = ParityBackend::new(prepared.twin(), &mut device);
+        prepared.draw(&mut parity, &options, true).unwrap();
+        let caught = differing(&parity.results);
+        assert_eq!(caught.len(), 1, "{kernel:?}");
+        assert_eq!((caught[0].kernel, caught[0].different), (kernel, 1));
+        assert_eq!(caught[0].first.map(|f| (f.0, f.1)), Some((buffer, 0)));
+    }
+    // Pictures and classes of whole frames, too.
+    let drawn = prepared.draw(&mut prepared.twin(), &options, false).unwrap();
+    let mut other = prepared.draw(&mut prepared.twin(), &options, false).unwrap();
+    other.pixels[5] ^= 0x0200;
+    other.classes[7] ^= 1;
+    assert!(drawn != other);
+    assert_eq!((drawn.pixels_apart(&other, 1), drawn.classes_apart(&other)), (1, 1));
+}
