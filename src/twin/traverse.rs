@@ -56,7 +56,8 @@ fn is_hole(scene: &SceneArgs, triangle: u32, u: f32, v: f32) -> bool {
     (scene.texels[(texture.offset + y * width + x) as usize] >> 24) < 128
 }
 
-/// Moeller and Trumbore's test, both sides: (t, u, v, flag bits) where the ray's line crosses the triangle.
+/// Moeller and Trumbore's test, both sides: (t, u, v, flag bits) where the ray's line crosses the triangle. The weights
+/// are compared before the division, as in the kernel.
 #[inline]
 fn intersect(scene: &SceneArgs, id: u32, o: Vec3, d: Vec3) -> Option<(f32, f32, f32, u32)> {
     let triangle = &scene.triangles[id as usize];
@@ -64,18 +65,20 @@ fn intersect(scene: &SceneArgs, id: u32, o: Vec3, d: Vec3) -> Option<(f32, f32, 
     let [e1x, e1y, e1z, _] = triangle.edge1;
     let [e2x, e2y, e2z, _] = triangle.edge2;
     let (px, py, pz) = (d.y * e2z - d.z * e2y, d.z * e2x - d.x * e2z, d.x * e2y - d.y * e2x);
-    let inverse_det = 1.0 / (e1x * px + e1y * py + e1z * pz);
+    let det = e1x * px + e1y * py + e1z * pz;
     let (sx, sy, sz) = (o.x - v0x, o.y - v0y, o.z - v0z);
-    let u = (sx * px + sy * py + sz * pz) * inverse_det;
-    if !(u >= 0.0 && u <= 1.0) {
+    let us = sx * px + sy * py + sz * pz;
+    if !(us * det >= 0.0 && us.abs() <= det.abs()) {
         return None;
     }
     let (qx, qy, qz) = (sy * e1z - sz * e1y, sz * e1x - sx * e1z, sx * e1y - sy * e1x);
-    let v = (d.x * qx + d.y * qy + d.z * qz) * inverse_det;
-    if !(v >= 0.0 && u + v <= 1.0) {
+    let vs = d.x * qx + d.y * qy + d.z * qz;
+    if !(vs * det >= 0.0 && (us + vs).abs() <= det.abs()) {
         return None;
     }
+    let inverse_det = 1.0 / det;
     let t = (e2x * qx + e2y * qy + e2z * qz) * inverse_det;
+    let (u, v) = (us * inverse_det, vs * inverse_det);
     Some((t, u, v, bits.to_bits()))
 }
 

@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Full tracing against the yardstick: `cargo bench -p rarefy-host-tests --bench full_tracing -- [ROUNDS] [SCENE ...]`.
+//!
+//! Builds `../shared/anchors/embree-whitted` (g++, Embree 3 and nlohmann-json must be installed) and draws each of the
+//! real scenes at 1024x1024 on equal work: Embree's single rays on two threads, and full tracing with
+//! `--shading anchor` in a fast build on the first OpenCL device. Both take turns, ROUNDS times (7 by default); in a
+//! round each draws three frames, of which the median counts, so that slow spells of the machine fall on both.
+//!
+//! Times are whole frames: `frame ms` of Rarefy includes the read-back of the picture, which Embree draws straight into
+//! memory; `kernel ms` is what the device itself reports. The ratio is Embree's frame over Rarefy's frame, the median of
+//! all rounds. Exit status: 1 if the ray counts of a scene differ by more than 0.5 %, 0 otherwise: the time itself
+//! decides nothing. The variable DEVICE_INDEX chooses another device, SHARED another folder in place of `../shared`.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitCode};
+
+use rarefy::options::{Mode, RenderOptions};
+use rarefy::renderer::{DeviceChoice, Keep, Renderer, RendererOptions};
+use rarefy::scene_buffers::Shading;
+
+const SCENES: [&str; 6] = ["modern-hall", "figures", "classroom", "living-room", "bathroom", "kitchen"];
+const SIZE: u32 = 1024;
+const FRAMES: usize = 3;
+const GOAL: f64 = 0.6;
+/// Largest difference of the ray counts: beyond, the two do not do the same work.
+const MOST_DIFFERENCE: f64 = 0.005;
+
+type BenchResult<T> = Result<T, Box<dyn std::error::Error>>;
+
+/// What one run of the yardstick says.
+struct Anchor {
+    frame_ms: f64,
+    /// Primary, shadow and reflection rays.
+    rays: [u64; 3],
+}
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+fn shared() -> PathBuf {
+    std::env::var_os("SHARED").map_or_else(|| root().join("../shared"), PathBuf::from)
+}
+
+/// Compiles the yardstick; `None`, with a line that says why, where that is not possible.
+fn build_anchor() -> Option<PathBuf> {
+    let source = shared().join("anchors/embree-whitted/main.cpp");
+    if !source.is_file() {
+        println!("skipped: ../shared/anchors/embree-whitted is not here");
+        return None;
+    }
+    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), PathBuf::from);
+    let program = target.join("embree-whitted");
+    let modified = |path: &Path| path.metadata().and_then(|data| data.modified()).ok();
+    if modified(&program) > modified(&source) {
+        return Some(program);
+    }
+    let compiler = std::env::var("CXX").unwrap_or_else(|_| "g++".into());
+    let output = Command::new(&compiler)
+        .args(["-O3", "-march=native", "-ffast-math", "-std=c++17"])
+        .arg(&source)
+        .arg("-o")
+        .arg(&program)
+        .args(["-lembree3", "-pthread"])
+        .output();
+    match output {
+        Ok(output) if output.status.success() => Some(program),
+        Ok(output) => {
+            println!(
+                "skipped: {compiler} cannot build the yardstick (apt-get install libembree-dev nlohmann-json3-dev)"
+            );
+            println!("{}", String::from_utf8_lossy(&output.stderr));
+            None
+        }
+        Err(error) => {
+            println!("skipped: {compiler} does not run: {error}");
+            None
+        }
+    }
+}
+
+/// The number behind `key` in the words of `text`.
+fn number_after(text: &str, key: &str) -> BenchResult<f64> {
+    let mut words = text.split_whitespace().skip_while(|word| *word != key).skip(1);
+    Ok(words.next().ok_or_else(|| format!("the yardstick says no `{key}`"))?.parse()?)
+}
+
+fn run_anchor(program: &Path, scene: &Path) -> BenchResult<Anchor> {
+    let (size, frames) = (SIZE.to_string(), FRAMES.to_string());
+    let output = Command::new(program)
+        .arg(scene.join("scene.obj"))
+        .arg(scene.join("view.json"))
+        .args(["--mode", "single", "--threads", "2", "--size", &size, "--frames", &frames])
+        .output()?;
+    if !output.status.success() {
+        return Err(String::from_utf8_lossy(&output.stderr).into());
+    }
+    let text = String::from_utf8(output.stdout)?;
+    let rays = ["primary", "shadow", "reflection"].map(|key| number_after(&text, key).map(|n| n as u64));
+    let [primary, shadow, reflection] = rays;
+    Ok(Anchor { frame_ms: number_after(&text, "median")?, rays: [primary?, shadow?, reflection?] })
+}
+
+fn median(values: &mut [f64]) -> f64 {
+    values.sort_by(f64::total_cmp);
+    let middle = values.len() / 2;
+    if values.len() % 2 == 1 { values[middle] } else { 0.5 * (values[middle - 1] + values[middle]) }
+}
+
+/// What both said of a scene.
+struct Measured {
+    ratio: f64,
+    rays_agree: bool,
+}
+
+fn measure(anchor: &Path, scene: &Path, name: &str, rounds: usize) -> BenchResult<Measured> {
+    let options = RendererOptions {
+        device: DeviceChoice::OpenCl(std::env::var("DEVICE_INDEX").ok().and_then(|index| index.parse().ok())),
+        shading: Shading::Anchor,
+        ..RendererOptions::default()
+    };
+    let mut renderer = Renderer::new(rarefy::scene::load(scene, &|_, _| {})?, &options, &|_, _| {})?;
+    let frame = RenderOptions { width: SIZE, height: SIZE, mode: Mode::Full, ..RenderOptions::default() };
+    let counted = renderer.render_exactly(&frame, Keep { counters: true, ..Keep::default() })?;
+    let rays = counted.stats.rays.ok_or("a counted frame without ray counts")?;
+    let ours = [rays.primary, rays.shadow, rays.reflection + rays.refraction];
+    renderer.render_exactly(&frame, Keep::default())?; // builds the timed program
+    let (mut theirs, mut whole, mut kernel, mut ratios) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    let mut their_rays = [0; 3];
+    for _ in 0..rounds {
+        let embree = run_anchor(anchor, scene)?;
+        let (mut frame_ms, mut kernel_ms) = (Vec::new(), Vec::new());
+        for _ in 0..FRAMES {
+            let stats = renderer.render_exactly(&frame, Keep::default())?.stats;
+            frame_ms.push(stats.frame_ms);
+            kernel_ms.push(stats.stages_ms.iter().sum());
+        }
+        let ms = median(&mut frame_ms);
+        ratios.push(embree.frame_ms / ms);
+        theirs.push(embree.frame_ms);
+        whole.push(ms);
+        kernel.push(median(&mut kernel_ms));
+        their_rays = embree.rays;
+    }
+    // Mirrors are rare in some scenes: a kind of ray counts as at least a thousandth of all.
+    let all: u64 = their_rays.iter().sum();
+    let agrees = |(&a, b): (&u64, u64)| a.abs_diff(b) as f64 <= MOST_DIFFERENCE * b.max(all / 1000) as f64;
+    let rays_agree = ours.iter().zip(their_rays).all(agrees);
+    let ratio = median(&mut ratios);
+    println!(
+        "{name:<12} {:>9} | {:>8} {:>8} {:>8} | {:>8} {:>8} {:>8} | {:>9.1} {:>9.1} {:>9.1} | {ratio:>6.3} {:>6.3} {:>6.3}{}",
+        renderer.triangle_count(),
+        their_rays[0],
+        their_rays[1],
+        their_rays[2],
+        ours[0],
+        ours[1],
+        ours[2],
+        median(&mut theirs),
+        median(&mut whole),
+        median(&mut kernel),
+        ratios[0],
+        ratios[ratios.len() - 1],
+        if rays_agree { "" } else { "  RAYS DIFFER BY MORE THAN 0.5 %" }
+    );
+    Ok(Measured { ratio, rays_agree })
+}
+
+fn run() -> BenchResult<bool> {
+    let words: Vec<String> = std::env::args().skip(1).filter(|word| !word.starts_with("--")).collect();
+    let rounds = words.iter().find_map(|word| word.parse().ok()).unwrap_or(7).max(1);
+    let names: Vec<&String> = words.iter().filter(|word| word.parse::<usize>().is_err()).collect();
+    let folder = shared().join("scenes");
+    if !folder.is_dir() {
+        println!("skipped: ../shared/scenes is not here");
+        return Ok(true);
+    }
+    let Some(anchor) = build_anchor() else { return Ok(true) };
+    println!(
+        "{rounds} rounds of {FRAMES} frames each, {SIZE}x{SIZE}, 2 threads; ratio = Embree's frame ms / Rarefy's frame ms"
+    );
+    println!(
+        "{:<12} {:>9} | {:>26} | {:>26} | {:>9} {:>9} {:>9} | {:>6} {:>6} {:>6}",
+        "", "", "Embree's rays", "Rarefy's rays", "Embree", "Rarefy", "Rarefy", "", "", ""
+    );
+    println!(
+        "{:<12} {:>9} | {:>8} {:>8} {:>8} | {:>8} {:>8} {:>8} | {:>9} {:>9} {:>9} | {:>6} {:>6} {:>6}",
+        "scene",
+        "triangles",
+        "primary",
+        "shadow",
+        "reflect.",
+        "primary",
+        "shadow",
+        "reflect.",
+        "frame ms",
+        "frame ms",
+        "kernel ms",
+        "ratio",
+        "least",
+        "most"
+    );
+    let (mut logarithms, mut count, mut agree) = (0.0, 0.0, true);
+    for name in SCENES.into_iter().filter(|name| names.is_empty() || names.iter().any(|wanted| wanted == name)) {
+        let scene = folder.join(name);
+        if !scene.is_dir() {
+            println!("skipped: {name} is not here");
+            continue;
+        }
+        let measured = measure(&anchor, &scene, name, rounds)?;
+        logarithms += measured.ratio.ln();
+        count += 1.0;
+        agree &= measured.rays_agree;
+    }
+    if count > 0.0 {
+        let mean = f64::exp(logarithms / count);
+        let verdict = if mean >= GOAL { "reached" } else { "missed" };
+        println!("geometric mean of the ratios: {mean:.3} of Embree's single rays; goal {GOAL}: {verdict}");
+    }
+    if !agree {
+        println!("the ray counts differ: the two did not do equal work");
+    }
+    Ok(agree)
+}
+
+fn main() -> ExitCode {
+    match run() {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::FAILURE,
+        Err(error) => {
+            eprintln!("full_tracing: {error}");
+            ExitCode::from(2)
+        }
+    }
+}
