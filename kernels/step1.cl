@@ -10,6 +10,6 @@ __kernel void step1(SCENE_PARAMS, const StepParams step, __global uint *out_attr
                     __global uint *out_counters) {
   const uint gx = get_global_id(0), gy = get_global_id(1);
   if (gx >= step.grid_width || gy >= step.grid_height) return;
-  trace_pixel(SCENE_ARGS, step.origin_x + step.step_x * gx, step.origin_y + step.step_y * gy, CLASS_BASE, step.flags,
+  trace_pixel(SCENE_ARGS, step.origin_x + step.step_x * gx, step.origin_y + step.step_y * gy, CLASS_BASE, &step,
               out_attributes, out_color, out_counters);
 }

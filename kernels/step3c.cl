@@ -11,6 +11,5 @@ __kernel void step3c(SCENE_PARAMS, const StepParams step, __global const uint *l
   const uint item = get_global_id(0);
   if (item >= step.item_count) return;
   const uint pixel = list[step.list_offset + item];
-  trace_pixel(SCENE_ARGS, pixel & 0xffffu, pixel >> 16, CLASS_TRACED, step.flags | STEP_STORE, out_attributes,
-              out_color, out_counters);
+  trace_pixel(SCENE_ARGS, pixel & 0xffffu, pixel >> 16, CLASS_TRACED, &step, out_attributes, out_color, out_counters);
 }

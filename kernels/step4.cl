@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // step4 (paper, post-correction): from every traced adaptive pixel, hit information spreads to its four neighbours;
-// an interpolated neighbour with another object (or, with STEP_COMPARE_SHADOW, other shadow bits) gets a ray, and if
-// that finds something other than interpolation had, the pixel spreads in turn.
+// an interpolated neighbour with another object (or, with STEP_COMPARE_SHADOW, other shadow bits; with
+// STEP_COMPARE_SHADING, another normal or reflected colour; where they look different) gets a ray, and if that finds something other than
+// interpolation had, the pixel spreads in turn.
 //
 // `converged`: rounds of mark, count, scan, scatter, trace until no pixel is listed. A round looks only at the
 // neighbours of the pixels that the last round traced, so the fired set is the least fixed point of the rule, the same
@@ -15,14 +16,15 @@
 #include "common/pack.clh"
 #include "common/trace.clh"
 
-// Does pixel `at` spread, and does its neighbour `to` hold something else?
-static inline bool spreads(const StepParams *step, uint pitch, __global const uint *attributes, uint at, uint to) {
+// Does pixel (x, y) spread to its neighbour (nx, ny): is it a source, is that interpolated, and is it something else?
+static inline bool spreads(__constant FrameParams *frame, const StepParams *step, __global const uint *attributes,
+                           __global const uint *color, uint x, uint y, uint nx, uint ny) {
+  const uint pitch = frame->plane_pitch, at = plane_index(frame, x, y), to = plane_index(frame, nx, ny);
   const uint from_class = attributes[PLANE_CLASS * pitch + at] & CLASS_MASK;
   if (from_class != CLASS_TRACED && from_class != CLASS_CORRECTED) return false;
   if ((attributes[PLANE_CLASS * pitch + to] & CLASS_MASK) != CLASS_INTERPOLATED) return false;
-  return attributes[PLANE_OBJECT * pitch + at] != attributes[PLANE_OBJECT * pitch + to] ||
-         ((step->flags & STEP_COMPARE_SHADOW) &&
-          attributes[PLANE_SHADOW * pitch + at] != attributes[PLANE_SHADOW * pitch + to]);
+  const Attributes a = load_attributes(attributes, pitch, at), b = load_attributes(attributes, pitch, to);
+  return hits_differ(step, &a, &b, color[y * frame->width + x], color[ny * frame->width + nx]);
 }
 
 // Item i looks from source i / 4 in direction i % 4: left, right, up, down. NO_PIXEL beyond the picture.
@@ -57,15 +59,14 @@ static inline bool claimed_by(__constant FrameParams *frame, const StepParams *s
 
 // Several sources may want the same neighbour: the lowest item claims it.
 __kernel void step4_mark(__constant FrameParams *frame, const StepParams step, __global uint *attributes,
-                         __global const uint *list) {
+                         __global const uint *list, __global const uint *color) {
   const uint i = get_global_id(0);
   if (i >= step.item_count) return;
   const uint pixel = neighbour(frame, &step, list, i);
   if (pixel == NO_PIXEL) return;
-  const uint pitch = frame->plane_pitch;
-  const uint at = pixel_plane_index(frame, list[step.source_offset + (i >> 2)]);
-  const uint to = pixel_plane_index(frame, pixel);
-  if (spreads(&step, pitch, attributes, at, to)) atomic_min(attributes + PLANE_CLAIM * pitch + to, i);
+  const uint source = list[step.source_offset + (i >> 2)];
+  if (spreads(frame, &step, attributes, color, source & 0xffffu, source >> 16, pixel & 0xffffu, pixel >> 16))
+    atomic_min(attributes + PLANE_CLAIM * frame->plane_pitch + pixel_plane_index(frame, pixel), i);
 }
 
 __kernel void step4_count(__constant FrameParams *frame, const StepParams step, __global const uint *attributes,
@@ -89,8 +90,7 @@ __kernel void step4_trace(SCENE_PARAMS, const StepParams step, __global const ui
   const uint item = get_global_id(0);
   if (item >= step.item_count) return;
   const uint pixel = list[step.list_offset + item];
-  trace_pixel(SCENE_ARGS, pixel & 0xffffu, pixel >> 16, CLASS_CORRECTED, step.flags | STEP_STORE, out_attributes,
-              out_color, out_counters);
+  trace_pixel(SCENE_ARGS, pixel & 0xffffu, pixel >> 16, CLASS_CORRECTED, &step, out_attributes, out_color, out_counters);
 }
 
 // One work-item walks one line there and back: rows if step_x is 1, columns if step_y is 1.
@@ -103,10 +103,9 @@ __kernel void step4_sweep(SCENE_PARAMS, const StepParams step, __global uint *at
     if (k == length) continue; // the turning point has no predecessor
     const uint from = k < length ? k - 1u : 2u * length - k;
     const uint to = k < length ? k : 2u * length - k - 1u;
-    const uint at = step.step_x ? plane_index(frame, from, line) : plane_index(frame, line, from);
-    const uint next = step.step_x ? plane_index(frame, to, line) : plane_index(frame, line, to);
-    if (spreads(&step, frame->plane_pitch, attributes, at, next))
-      trace_pixel(SCENE_ARGS, step.step_x ? to : line, step.step_x ? line : to, CLASS_CORRECTED,
-                  step.flags | STEP_STORE, attributes, out_color, out_counters);
+    const uint x = step.step_x ? from : line, y = step.step_x ? line : from;
+    const uint nx = step.step_x ? to : line, ny = step.step_x ? line : to;
+    if (spreads(frame, &step, attributes, out_color, x, y, nx, ny))
+      trace_pixel(SCENE_ARGS, nx, ny, CLASS_CORRECTED, &step, attributes, out_color, out_counters);
   }
 }

@@ -21,7 +21,8 @@ pub fn frame_params(
     depth_limit: u32,
 ) -> FrameParams {
     let camera = &view.camera;
-    let half = (camera.fov_y_degrees.to_radians() * 0.5).tan();
+    // In doubles: systems' tangents differ in their last bit, which the rounding to f32 takes away.
+    let half = (f64::from(camera.fov_y_degrees).to_radians() * 0.5).tan() as f32;
     let forward = normalize(camera.look_at - camera.eye);
     let right = normalize(cross(forward, camera.up));
     let up = cross(right, forward) * half;

@@ -108,6 +108,8 @@ shared_constants! {
     STEP_PERSPECTIVE = 4;
     /// Step flag: test GC compares linear colours, not their square roots.
     STEP_GCOL_LINEAR = 8;
+    /// Step flag: step4 compares normals (by `t_norm`) and reflected colours (by `t_gcol`) too.
+    STEP_COMPARE_SHADING = 16;
 
     /// Surface kind: diffuse and highlight only.
     SURFACE_OPAQUE = 0;
@@ -238,8 +240,11 @@ pub struct StepParams {
     pub tests: u32,
     pub flags: u32,
     pub scan_group: u32,
+    pub lenient_tests: u32,
+    pub t_visible: u32,
+    pub pad: [u32; 2],
 }
-const _: () = assert!(size_of::<StepParams>() == 80);
+const _: () = assert!(size_of::<StepParams>() == 96);
 
 /// `Light` of `kernels/types.h`.
 #[repr(C)]

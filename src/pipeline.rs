@@ -132,6 +132,9 @@ fn with_checks(step: StepParams, tolerances: &Tolerances, options: &RenderOption
         t_tex: tolerances.t_tex,
         t_gcol: tolerances.t_gcol,
         tests: options.tests,
+        // The strictest tolerances trace every pixel, whatever it looks like.
+        lenient_tests: if tolerances.t_pos > 0.0 { options.lenient_tests } else { 0 },
+        t_visible: options.t_visible,
         flags: STEP_STORE | perspective | gcol_linear,
         ..step
     }
@@ -177,8 +180,16 @@ fn correct(backend: &mut dyn Backend, frame: &FrameParams, options: &RenderOptio
         Correction::Off => return Ok(0),
         Correction::Object => STEP_STORE,
         Correction::ObjectAndShadow => STEP_STORE | STEP_COMPARE_SHADOW,
+        Correction::All => STEP_STORE | STEP_COMPARE_SHADOW | STEP_COMPARE_SHADING,
     };
-    let step = StepParams { flags, ..bytemuck::Zeroable::zeroed() };
+    let gcol_linear = if options.gcol_linear { STEP_GCOL_LINEAR } else { 0 };
+    let step = StepParams {
+        flags: flags | gcol_linear,
+        t_visible: options.correction_t_visible,
+        t_norm: options.correction_t_norm,
+        t_gcol: options.correction_t_gcol,
+        ..bytemuck::Zeroable::zeroed()
+    };
     match options.correction_method {
         CorrectionMethod::Converged => correct_converged(backend, &step, traced),
         CorrectionMethod::Sweeps => correct_by_sweeps(backend, frame, &step),

@@ -207,7 +207,7 @@ impl Kernel {
             Kernel::Step2bCount | Kernel::Step3bCount => &[Frame, Step, Attributes, Masks, Sums],
             Kernel::Step2bScan | Kernel::Step3bScan | Kernel::Step4Scan => &[Step, Sums, Scratch],
             Kernel::Step2bScatter | Kernel::Step3bScatter => &[Step, Masks, Sums, List],
-            Kernel::Step4Mark => &[Frame, Step, Attributes, List],
+            Kernel::Step4Mark => &[Frame, Step, Attributes, List, Color],
             Kernel::Step4Count => &[Frame, Step, Attributes, List, Masks, Sums],
             Kernel::Step4Scatter => &[Frame, Step, Masks, Sums, List, List],
         }

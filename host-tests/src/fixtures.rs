@@ -246,6 +246,9 @@ pub fn options(mode: Mode, width: u32, height: u32, block: u32) -> RenderOptions
         correction: Correction::Off,
         tolerances: Tolerances::PAPER,
         coarse_tolerances: Tolerances::PAPER,
+        lenient_tests: 0,
+        t_visible: 0,
+        correction_t_visible: 0,
         ..RenderOptions::default()
     }
 }

@@ -234,9 +234,14 @@ impl Backend for OpenClBackend {
         let (global, local) = match kernel.items() {
             Items::Grid => {
                 let wanted = self.door.choices().work_group(kernel.stage().name());
-                ([step.grid_width as usize, step.grid_height as usize], self.door.fit_work_group(device_kernel, wanted, false))
+                (
+                    [step.grid_width as usize, step.grid_height as usize],
+                    self.door.fit_work_group(device_kernel, wanted, false),
+                )
             }
-            Items::List => ([step.item_count as usize, 1], self.door.fit_work_group(device_kernel, [LIST_GROUP, 1], false)),
+            Items::List => {
+                ([step.item_count as usize, 1], self.door.fit_work_group(device_kernel, [LIST_GROUP, 1], false))
+            }
             Items::Chunks => (
                 [step.item_count.div_ceil(32) as usize, 1],
                 self.door.fit_work_group(device_kernel, [LIST_GROUP, 1], false),
@@ -247,7 +252,14 @@ impl Backend for OpenClBackend {
         if global.contains(&0) {
             return Ok(());
         }
-        self.door.launch(&Launch { label: kernel.name(), kernel: device_kernel, args: &args, global, local: Some(local), barrier })
+        self.door.launch(&Launch {
+            label: kernel.name(),
+            kernel: device_kernel,
+            args: &args,
+            global,
+            local: Some(local),
+            barrier,
+        })
     }
 
     fn read_sum(&mut self, at: u32) -> Result<u32> {

@@ -75,6 +75,8 @@ pub enum CorrectionArg {
     /// Compare object ids and shadow bits.
     #[value(name = "object+shadow")]
     ObjectAndShadow,
+    /// Compare object ids, shadow bits, normals and reflected colours.
+    All,
 }
 
 /// `--correction-method`.
@@ -149,7 +151,7 @@ pub struct DrawArgs {
     #[arg(long, default_value_t = 4)]
     pub depth: u32,
     /// What post-correction compares.
-    #[arg(long, value_enum, default_value = "object+shadow")]
+    #[arg(long, value_enum, default_value = "all")]
     pub correction: CorrectionArg,
     /// How post-correction spreads.
     #[arg(long, value_enum, default_value = "converged")]
@@ -240,6 +242,7 @@ impl DrawArgs {
                 CorrectionArg::Off => Correction::Off,
                 CorrectionArg::Object => Correction::Object,
                 CorrectionArg::ObjectAndShadow => Correction::ObjectAndShadow,
+                CorrectionArg::All => Correction::All,
             },
             correction_method: match self.correction_method {
                 CorrectionMethodArg::Converged => CorrectionMethod::Converged,

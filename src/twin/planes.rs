@@ -10,6 +10,7 @@ use glam::Vec3;
 
 use super::scene_args::{Work, xyz};
 use crate::layout::*;
+use crate::math::{clamp, dot};
 
 /// A buffer of 32-bit words that items on any thread may read and write.
 #[derive(Debug, Default)]
@@ -125,6 +126,39 @@ pub fn load_attributes(planes: &Words, pitch: u32, at: u32) -> Attributes {
         object: planes.get(PLANE_OBJECT * pitch + at),
         shadow_bits: planes.get(PLANE_SHADOW * pitch + at),
     }
+}
+
+/// Distance of two reflected colours: linear with `STEP_GCOL_LINEAR`, else of the square roots of clamped channels.
+pub fn gcol_distance(a: Vec3, b: Vec3, flags: u32) -> f32 {
+    let shown = |c: Vec3| {
+        if flags & STEP_GCOL_LINEAR != 0 {
+            return c;
+        }
+        Vec3::new(clamp(c.x, 0.0, 1.0).sqrt(), clamp(c.y, 0.0, 1.0).sqrt(), clamp(c.z, 0.0, 1.0).sqrt())
+    };
+    let e = shown(a) - shown(b);
+    dot(e, e).sqrt()
+}
+
+/// Do two pixels differ by `t_visible` or more in a channel of their shown colours?
+pub fn look_different(a: u32, b: u32, t_visible: u32) -> bool {
+    [0, 8, 16].iter().any(|shift| ((a >> shift) & 255).abs_diff((b >> shift) & 255) >= t_visible)
+}
+
+/// Does post-correction take two hits to be of different things?
+pub fn hits_differ(step: &StepParams, a: &Attributes, b: &Attributes, color_a: u32, color_b: u32) -> bool {
+    if a.object != b.object {
+        return true;
+    }
+    if a.object == NO_OBJECT || !look_different(color_a, color_b, step.t_visible) {
+        return false;
+    }
+    if step.flags & STEP_COMPARE_SHADOW != 0 && a.shadow_bits != b.shadow_bits {
+        return true;
+    }
+    // Comparisons are written so that NaN differs, as in the kernel.
+    step.flags & STEP_COMPARE_SHADING != 0
+        && (!(dot(a.normal, b.normal) >= step.t_norm) || !(gcol_distance(a.gcol, b.gcol, step.flags) <= step.t_gcol))
 }
 
 /// Writes the work counters of the pixel at plane index `at`, if counters are kept.

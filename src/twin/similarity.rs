@@ -1,28 +1,17 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Twin of `kernels/common/similarity.clh`: the seven checks and the interpolation.
 
-use glam::Vec3;
-
 use super::FrameBuffers;
-use super::planes::{Attributes, load_attributes, plane_index, store_attributes, store_work};
+use super::planes::{
+    Attributes, gcol_distance, load_attributes, look_different, plane_index, store_attributes, store_work,
+};
 use super::scene_args::{SceneArgs, Work, xyz};
 use super::shade::{ShadePoint, shade_local, srgb_word};
 use crate::layout::*;
-use crate::math::{clamp, dot, normalize};
+use crate::math::{dot, normalize};
 
 fn wraps(a: f32, b: f32, t_tex: f32) -> bool {
     (a < t_tex && b > 1.0 - t_tex) || (b < t_tex && a > 1.0 - t_tex)
-}
-
-fn gcol_distance(a: Vec3, b: Vec3, flags: u32) -> f32 {
-    let shown = |c: Vec3| {
-        if flags & STEP_GCOL_LINEAR != 0 {
-            return c;
-        }
-        Vec3::new(clamp(c.x, 0.0, 1.0).sqrt(), clamp(c.y, 0.0, 1.0).sqrt(), clamp(c.z, 0.0, 1.0).sqrt())
-    };
-    let e = shown(a) - shown(b);
-    dot(e, e).sqrt()
 }
 
 /// The fail mask of a pair of references: bit `FAIL_*` set where that test fails and is switched on.
@@ -99,7 +88,10 @@ pub fn check_pixel(scene: &SceneArgs, step: &StepParams, x: u32, y: u32, out: &F
     let a = load_attributes(planes, pitch, plane_index(frame, x - step.reference_dx, y - step.reference_dy));
     let b = load_attributes(planes, pitch, plane_index(frame, x + step.reference_dx, y + step.reference_dy));
     let mask = similarity_checks(scene, step, &a, &b);
-    if mask != 0 {
+    let color = |x: u32, y: u32| out.color.get(y * frame.width + x);
+    let color_a = color(x - step.reference_dx, y - step.reference_dy);
+    let color_b = color(x + step.reference_dx, y + step.reference_dy);
+    if mask != 0 && (mask & !step.lenient_tests != 0 || look_different(color_a, color_b, step.t_visible)) {
         planes.set(PLANE_CLASS * pitch + at, CLASS_PENDING | mask);
         return;
     }

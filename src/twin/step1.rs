@@ -10,5 +10,5 @@ pub fn step1(scene: &SceneArgs, step: &StepParams, gx: u32, gy: u32, buffers: &F
         return;
     }
     let (x, y) = (step.origin_x + step.step_x * gx, step.origin_y + step.step_y * gy);
-    super::trace::trace_pixel(scene, x, y, CLASS_BASE, step.flags, buffers);
+    super::trace::trace_pixel(scene, x, y, CLASS_BASE, step, buffers);
 }

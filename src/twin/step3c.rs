@@ -2,7 +2,7 @@
 //! Twin of `kernels/step3c.cl`.
 
 use super::{FrameBuffers, SceneArgs};
-use crate::layout::{CLASS_TRACED, STEP_STORE, StepParams};
+use crate::layout::{CLASS_TRACED, StepParams};
 
 /// One work-item of `step3c`.
 pub fn step3c(scene: &SceneArgs, step: &StepParams, item: u32, buffers: &FrameBuffers) {
@@ -10,5 +10,5 @@ pub fn step3c(scene: &SceneArgs, step: &StepParams, item: u32, buffers: &FrameBu
         return;
     }
     let pixel = buffers.list.get(step.list_offset + item);
-    super::trace::trace_pixel(scene, pixel & 0xffff, pixel >> 16, CLASS_TRACED, step.flags | STEP_STORE, buffers);
+    super::trace::trace_pixel(scene, pixel & 0xffff, pixel >> 16, CLASS_TRACED, step, buffers);
 }

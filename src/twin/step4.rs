@@ -1,13 +1,21 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Twin of `kernels/step4.cl`: post-correction.
 
-use super::planes::plane_index;
+use super::planes::{hits_differ, load_attributes, plane_index};
 use super::trace::trace_pixel;
 use super::{FrameBuffers, SceneArgs, pack};
 use crate::layout::*;
 
-fn spreads(step: &StepParams, pitch: u32, buffers: &FrameBuffers, at: u32, to: u32) -> bool {
+fn spreads(
+    frame: &FrameParams,
+    step: &StepParams,
+    buffers: &FrameBuffers,
+    (x, y): (u32, u32),
+    (nx, ny): (u32, u32),
+) -> bool {
     let planes = &buffers.attributes;
+    let pitch = frame.plane_pitch;
+    let (at, to) = (plane_index(frame, x, y), plane_index(frame, nx, ny));
     let from_class = planes.get(PLANE_CLASS * pitch + at) & CLASS_MASK;
     if from_class != CLASS_TRACED && from_class != CLASS_CORRECTED {
         return false;
@@ -15,9 +23,9 @@ fn spreads(step: &StepParams, pitch: u32, buffers: &FrameBuffers, at: u32, to: u
     if planes.get(PLANE_CLASS * pitch + to) & CLASS_MASK != CLASS_INTERPOLATED {
         return false;
     }
-    planes.get(PLANE_OBJECT * pitch + at) != planes.get(PLANE_OBJECT * pitch + to)
-        || (step.flags & STEP_COMPARE_SHADOW != 0
-            && planes.get(PLANE_SHADOW * pitch + at) != planes.get(PLANE_SHADOW * pitch + to))
+    let (a, b) = (load_attributes(planes, pitch, at), load_attributes(planes, pitch, to));
+    let color = |x: u32, y: u32| buffers.color.get(y * frame.width + x);
+    hits_differ(step, &a, &b, color(x, y), color(nx, ny))
 }
 
 fn neighbour(frame: &FrameParams, step: &StepParams, buffers: &FrameBuffers, i: u32) -> u32 {
@@ -46,11 +54,10 @@ pub fn step4_mark(scene: &SceneArgs, step: &StepParams, i: u32, buffers: &FrameB
     if pixel == NO_PIXEL {
         return;
     }
-    let pitch = frame.plane_pitch;
-    let at = pixel_plane_index(frame, buffers.list.get(step.source_offset + (i >> 2)));
-    let to = pixel_plane_index(frame, pixel);
-    if spreads(step, pitch, buffers, at, to) {
-        buffers.attributes.min(PLANE_CLAIM * pitch + to, i);
+    let source = buffers.list.get(step.source_offset + (i >> 2));
+    let coordinates = |pixel: u32| (pixel & 0xffff, pixel >> 16);
+    if spreads(frame, step, buffers, coordinates(source), coordinates(pixel)) {
+        buffers.attributes.min(PLANE_CLAIM * frame.plane_pitch + pixel_plane_index(frame, pixel), i);
     }
 }
 
@@ -89,7 +96,7 @@ pub fn step4_trace(scene: &SceneArgs, step: &StepParams, item: u32, buffers: &Fr
         return;
     }
     let pixel = buffers.list.get(step.list_offset + item);
-    trace_pixel(scene, pixel & 0xffff, pixel >> 16, CLASS_CORRECTED, step.flags | STEP_STORE, buffers);
+    trace_pixel(scene, pixel & 0xffff, pixel >> 16, CLASS_CORRECTED, step, buffers);
 }
 
 /// One work-item of `step4_sweep`.
@@ -104,9 +111,9 @@ pub fn step4_sweep(scene: &SceneArgs, step: &StepParams, line: u32, buffers: &Fr
     let forth = (1..length).map(|k| (k - 1, k));
     let back = (1..length).rev().map(|k| (k, k - 1));
     for (from, to) in forth.chain(back) {
-        let ((fx, fy), (tx, ty)) = (pixel(from), pixel(to));
-        if spreads(step, frame.plane_pitch, buffers, plane_index(frame, fx, fy), plane_index(frame, tx, ty)) {
-            trace_pixel(scene, tx, ty, CLASS_CORRECTED, step.flags | STEP_STORE, buffers);
+        let (tx, ty) = pixel(to);
+        if spreads(frame, step, buffers, pixel(from), (tx, ty)) {
+            trace_pixel(scene, tx, ty, CLASS_CORRECTED, step, buffers);
         }
     }
 }

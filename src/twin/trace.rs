@@ -4,7 +4,9 @@
 use glam::Vec3;
 
 use super::FrameBuffers;
-use super::planes::{Attributes, pixel_direction, plane_index, store_attributes, store_work};
+use super::planes::{
+    Attributes, hits_differ, load_attributes, pixel_direction, plane_index, store_attributes, store_work,
+};
 use super::scene_args::{SceneArgs, Work, xyz};
 use super::shade::{ShadePoint, shade_local, srgb_word};
 use super::traverse::{Hit, any_hit, closest_hit};
@@ -190,7 +192,7 @@ pub fn gather_secondary(scene: &SceneArgs, p: &SurfacePoint, d: Vec3, work: &mut
 }
 
 /// Traces and shades the pixel `(x, y)`; see the kernel for what is written when.
-pub fn trace_pixel(scene: &SceneArgs, x: u32, y: u32, pixel_class: u32, flags: u32, out: &FrameBuffers) {
+pub fn trace_pixel(scene: &SceneArgs, x: u32, y: u32, pixel_class: u32, step: &StepParams, out: &FrameBuffers) {
     let mut work = Work::default();
     let frame = scene.frame;
     let at = plane_index(frame, x, y);
@@ -213,14 +215,18 @@ pub fn trace_pixel(scene: &SceneArgs, x: u32, y: u32, pixel_class: u32, flags: u
         };
         color = shade_local(scene, &p.shade_point(a.shadow_bits), -d) + a.gcol;
     }
-    if flags & STEP_STORE != 0 {
+    let word = srgb_word(scene.tables, color);
+    if pixel_class != CLASS_BASE || step.flags & STEP_STORE != 0 {
         let pitch = frame.plane_pitch;
         let planes = &out.attributes;
         let mut new_class = pixel_class;
         if pixel_class == CLASS_CORRECTED {
-            let changed = a.object != planes.get(PLANE_OBJECT * pitch + at)
-                || (flags & STEP_COMPARE_SHADOW != 0 && a.shadow_bits != planes.get(PLANE_SHADOW * pitch + at));
-            new_class = if changed { CLASS_CORRECTED } else { CLASS_CONFIRMED };
+            let before = load_attributes(planes, pitch, at);
+            new_class = if hits_differ(step, &a, &before, out.color.get(y * frame.width + x), word) {
+                CLASS_CORRECTED
+            } else {
+                CLASS_CONFIRMED
+            };
         }
         store_attributes(planes, pitch, at, &a);
         let mask = if pixel_class == CLASS_BASE { 0 } else { planes.get(PLANE_CLASS * pitch + at) & !CLASS_MASK };
@@ -228,5 +234,5 @@ pub fn trace_pixel(scene: &SceneArgs, x: u32, y: u32, pixel_class: u32, flags: u
         planes.set(PLANE_CLAIM * pitch + at, NO_CLAIM);
     }
     store_work(&out.counters, frame.plane_pitch, at, &work);
-    out.color.set(y * frame.width + x, srgb_word(scene.tables, color));
+    out.color.set(y * frame.width + x, word);
 }
