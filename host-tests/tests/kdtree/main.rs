@@ -298,7 +298,7 @@ fn damaged_trees_are_found() {
             "the wrong axis",
             "",
             Box::new(|t| {
-                t.nodes[0].axis_and_payload = t.nodes[0].axis_and_payload & !3 | (t.nodes[0].axis() + 1) % 3;
+                t.nodes[0].axis_and_payload = (t.nodes[0].axis_and_payload & !3) | ((t.nodes[0].axis() + 1) % 3);
             }),
         ),
         ("bounds too tight", "not strictly within", Box::new(|t| t.bounds_max[1] -= 0.01)),
