@@ -4,6 +4,21 @@
 //! It implements "Adaptive undersampling for efficient mobile ray tracing" (Kim et al., The Visual Computer 2016) with
 //! OpenCL 1.2 kernels and a CPU twin of every kernel. Data flows one way:
 //! scene files -> [`scene::Scene`] -> [`kdtree::KdTree`] -> device buffers -> stages -> frame -> PNG.
+//!
+//! ```no_run
+//! use rarefy::options::RenderOptions;
+//! use rarefy::renderer::{DeviceChoice, Keep, Renderer, RendererOptions};
+//!
+//! fn main() -> rarefy::Result<()> {
+//!     let scene = rarefy::builtin::to_scene("spheres")?; // files: rarefy::scene::load(path, &|_, _| {})?
+//!     let device = RendererOptions { device: DeviceChoice::Auto, ..RendererOptions::default() };
+//!     let mut renderer = Renderer::new(scene, &device, &|_, _| {})?;
+//!     let options = RenderOptions { width: 320, height: 240, ..RenderOptions::default() };
+//!     let frame = renderer.render(&options, Keep::default())?;
+//!     println!("{:?} in {:.0} ms", frame.stats.pixels, frame.stats.frame_ms);
+//!     rarefy::picture::write_png("spheres.png", frame.width, frame.height, &frame.pixels)
+//! }
+//! ```
 
 pub mod backend;
 pub mod builtin;

@@ -65,13 +65,13 @@ fn programs() -> Vec<&'static str> {
     FILES.iter().map(|(name, _)| *name).filter(|name| name.ends_with(".cl")).collect()
 }
 
-/// Files of `kernels/` and `kernels/common/`, by their path below `kernels/`.
+/// Files of `kernels/` and `kernels/common/`, by their path below `kernels/`; documents aside.
 fn files_on_disk() -> BTreeSet<String> {
     let mut names = BTreeSet::new();
     for folder in ["", "common/"] {
         for entry in root().join("kernels").join(folder).read_dir().unwrap() {
             let entry = entry.unwrap();
-            if entry.file_type().unwrap().is_file() {
+            if entry.file_type().unwrap().is_file() && entry.path().extension().is_none_or(|e| e != "md") {
                 names.insert(format!("{folder}{}", entry.file_name().to_str().unwrap()));
             }
         }

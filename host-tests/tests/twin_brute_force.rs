@@ -48,7 +48,7 @@ fn judge(o: Vec3, d: Vec3, [a, b, c]: [Vec3; 3]) -> (f64, f64) {
 
 fn on_edge(scene: &Scene, o: Vec3, d: Vec3, id: usize) -> bool {
     let (inside, rounding) = judge(o, d, corners(scene, id));
-    !(inside > rounding)
+    inside <= rounding || inside.is_nan() || rounding.is_nan()
 }
 
 /// Is the texel at the hit a hole? `None` too near to a texel's border to say.
