@@ -159,7 +159,7 @@ pub const SRGB_LEAST: f32 = f32::from_bits(SRGB_FIRST_BUCKET << 16);
 /// Which flavour of the kernels is built.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct BuildFlavour {
-    /// Bit for bit like the CPU twin: no fused multiply-add, correctly rounded division and square root.
+    /// Bit for bit like the CPU twin: correctly rounded division and square root, where the device has a choice.
     pub strict: bool,
     /// Keep per-pixel work counters.
     pub count: bool,

@@ -41,7 +41,7 @@ impl Planes {
 
     fn neighbours(&self, at: usize) -> impl Iterator<Item = usize> + use<> {
         let (width, len) = (self.width, self.class.len());
-        let left = (at % width > 0).then(|| at - 1);
+        let left = (!at.is_multiple_of(width)).then(|| at - 1);
         let right = (at % width + 1 < width).then_some(at + 1);
         let up = (at >= width).then(|| at - width);
         let down = (at + width < len).then_some(at + width);
@@ -358,7 +358,7 @@ fn the_kernels_give_the_same_for_sources_in_any_order() {
             for order in 0..4 {
                 let before = without_correction(&mut renderer, &options);
                 let traced = (0..before.class.len() as u32).filter(|&at| before.is(at as usize, &[CLASS_TRACED]));
-                let mut sources: Vec<u32> = traced.map(|at| at % width | at / width << 16).collect();
+                let mut sources: Vec<u32> = traced.map(|at| (at % width) | ((at / width) << 16)).collect();
                 match order {
                     0 => (),
                     1 => sources.reverse(),

@@ -146,7 +146,10 @@ impl OpenClBackend {
         }
         let started = std::time::Instant::now();
         let stage = kernel.stage();
-        let options = layout::build_options(self.flavour);
+        let mut options = layout::build_options(self.flavour);
+        if self.flavour.strict && self.door.limits().correctly_rounded_divide_sqrt {
+            options.push_str(" -cl-fp32-correctly-rounded-divide-sqrt");
+        }
         let source = kernels::stage_source(stage, self.mutation.as_ref());
         let program = self.door.program(&ProgramSource { name: stage.name(), source: &source, options: &options })?;
         for entry in Kernel::ALL.into_iter().filter(|k| k.stage() == stage) {

@@ -51,6 +51,8 @@ pub struct Limits {
     pub watchdog_ms: Option<u64>,
     /// `CL_DEVICE_MAX_COMPUTE_UNITS`.
     pub compute_units: u64,
+    /// Whether division and square root can be rounded correctly, if the build asks for it.
+    pub correctly_rounded_divide_sqrt: bool,
     /// Which limits a profile set below the device's own: key of the query, name of the profile.
     set_by: Vec<(&'static str, String)>,
 }
@@ -90,6 +92,9 @@ impl Limits {
             slice_ms: None,
             watchdog_ms: None,
             compute_units: u64::MAX,
+            correctly_rounded_divide_sqrt: device
+                .words("cl_device_single_fp_config")
+                .is_some_and(|flags| flags.iter().any(|flag| flag == "CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT")),
             set_by: Vec::new(),
         };
         limits.clamp(device, None);
