@@ -124,6 +124,15 @@ pub enum GcolSpaceArg {
     Linear,
 }
 
+/// `--rules`.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub enum RulesArg {
+    /// Our defaults.
+    Ours,
+    /// The paper's tolerances, interpolation and correction.
+    Paper,
+}
+
 /// `--build`.
 #[derive(Debug, Clone, Copy, ValueEnum)]
 pub enum BuildArg {
@@ -150,15 +159,22 @@ pub struct DrawArgs {
     /// Most secondary rays in a chain.
     #[arg(long, default_value_t = 4)]
     pub depth: u32,
-    /// What post-correction compares.
-    #[arg(long, value_enum, default_value = "all")]
-    pub correction: CorrectionArg,
-    /// How post-correction spreads.
-    #[arg(long, value_enum, default_value = "converged")]
-    pub correction_method: CorrectionMethodArg,
-    /// Where between its references an interpolated pixel lies.
-    #[arg(long, value_enum, default_value = "perspective")]
-    pub interpolation: InterpolationArg,
+    /// Whose defaults count for the options below.
+    #[arg(long, value_enum, default_value = "ours")]
+    pub rules: RulesArg,
+    /// What post-correction compares; all by default.
+    #[arg(long, value_enum)]
+    pub correction: Option<CorrectionArg>,
+    /// How post-correction spreads; converged by default.
+    #[arg(long, value_enum)]
+    pub correction_method: Option<CorrectionMethodArg>,
+    /// Where between its references an interpolated pixel lies; perspective by default.
+    #[arg(long, value_enum)]
+    pub interpolation: Option<InterpolationArg>,
+    /// From which difference of a colour channel of 0 to 255 on pixels look different, for the lenient shadow test and
+    /// for correction; 0: always.
+    #[arg(long)]
+    pub t_visible: Option<u32>,
     /// G2: largest distance of the two hits, as a share of the scene's extent.
     #[arg(long, allow_negative_numbers = true)]
     pub t_pos: Option<f32>,
@@ -175,8 +191,8 @@ pub struct DrawArgs {
     #[arg(long, allow_negative_numbers = true)]
     pub t_gcol: Option<f32>,
     /// GC: compare reflected colours as displayed or linearly.
-    #[arg(long, value_enum, default_value = "display")]
-    pub gcol_space: GcolSpaceArg,
+    #[arg(long, value_enum)]
+    pub gcol_space: Option<GcolSpaceArg>,
     /// Tests to switch off, such as gc,tx.
     #[arg(long, value_delimiter = ',')]
     pub disable_test: Vec<String>,
@@ -232,6 +248,10 @@ impl DrawArgs {
         if self.samples != 1 {
             return Err(Error::option("--samples", format!("{} is not available; 1 is", self.samples)));
         }
+        let base = match self.rules {
+            RulesArg::Ours => RenderOptions::default(),
+            RulesArg::Paper => RenderOptions::paper(),
+        };
         let mut options = RenderOptions {
             width: self.size.width,
             height: self.size.height,
@@ -239,21 +259,30 @@ impl DrawArgs {
             block: self.blocks,
             depth: self.depth,
             correction: match self.correction {
-                CorrectionArg::Off => Correction::Off,
-                CorrectionArg::Object => Correction::Object,
-                CorrectionArg::ObjectAndShadow => Correction::ObjectAndShadow,
-                CorrectionArg::All => Correction::All,
+                None => base.correction,
+                Some(CorrectionArg::Off) => Correction::Off,
+                Some(CorrectionArg::Object) => Correction::Object,
+                Some(CorrectionArg::ObjectAndShadow) => Correction::ObjectAndShadow,
+                Some(CorrectionArg::All) => Correction::All,
             },
             correction_method: match self.correction_method {
-                CorrectionMethodArg::Converged => CorrectionMethod::Converged,
-                CorrectionMethodArg::Sweeps => CorrectionMethod::Sweeps,
+                None => base.correction_method,
+                Some(CorrectionMethodArg::Converged) => CorrectionMethod::Converged,
+                Some(CorrectionMethodArg::Sweeps) => CorrectionMethod::Sweeps,
             },
             interpolation: match self.interpolation {
-                InterpolationArg::Perspective => Interpolation::Perspective,
-                InterpolationArg::Plain => Interpolation::Plain,
+                None => base.interpolation,
+                Some(InterpolationArg::Perspective) => Interpolation::Perspective,
+                Some(InterpolationArg::Plain) => Interpolation::Plain,
             },
-            gcol_linear: matches!(self.gcol_space, GcolSpaceArg::Linear),
-            ..RenderOptions::default()
+            gcol_linear: match self.gcol_space {
+                None => base.gcol_linear,
+                Some(GcolSpaceArg::Display) => false,
+                Some(GcolSpaceArg::Linear) => true,
+            },
+            t_visible: self.t_visible.unwrap_or(base.t_visible),
+            correction_t_visible: self.t_visible.unwrap_or(base.correction_t_visible),
+            ..base
         };
         // A tolerance that is given counts at every level of blocks.
         for tolerances in [&mut options.tolerances, &mut options.coarse_tolerances] {

@@ -42,7 +42,7 @@ fn dispatch(command: &Command) -> Result<bool> {
         Command::Doctor(args) => doctor::run(args).map(|()| true),
         Command::MakeScene(args) => {
             rarefy::builtin::write(&args.name, &args.output)?;
-            println!("{}", args.output.display());
+            output::say(None, &args.output.display().to_string());
             Ok(true)
         }
     }

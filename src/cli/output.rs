@@ -22,11 +22,12 @@ pub fn write_json(path: &Path, value: &Value) -> Result<()> {
 
 /// Prints a line for people: to standard output, or to standard error where JSON has that.
 pub fn say(json: Option<&Path>, line: &str) {
-    if json == Some(Path::new(STANDARD_OUTPUT)) {
-        eprintln!("{line}");
+    // Whoever closed the pipe (`| head`) has read enough: that is no error.
+    let _ = if json == Some(Path::new(STANDARD_OUTPUT)) {
+        writeln!(std::io::stderr(), "{line}")
     } else {
-        println!("{line}");
-    }
+        writeln!(std::io::stdout(), "{line}")
+    };
 }
 
 /// Prints notices and warnings to standard error; long lists are cut.

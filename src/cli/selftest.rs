@@ -6,6 +6,7 @@ use rarefy::stage::Stage;
 use rarefy::{Error, Result, selftest};
 
 use super::args::{SelftestArgs, profile};
+use super::output::say;
 
 /// Prints every check; true if all passed.
 pub fn run(args: &SelftestArgs) -> Result<bool> {
@@ -26,9 +27,10 @@ pub fn run(args: &SelftestArgs) -> Result<bool> {
         ..RendererOptions::default()
     };
     let result = selftest::run(&options)?;
-    println!("{}", result.device);
+    say(None, &result.device);
     for check in &result.checks {
-        println!("  {:5} {:15} {}", if check.passed { "ok" } else { "WRONG" }, check.name, check.detail);
+        let word = if check.passed { "ok" } else { "WRONG" };
+        say(None, &format!("  {word:5} {:15} {}", check.name, check.detail));
     }
     if let Err(error) = result.require() {
         eprintln!("rarefy: {error}");
