@@ -13,6 +13,6 @@ need_rust_with_source "the 32-bit test"
 export CARGO_TARGET_ARMV7_UNKNOWN_LINUX_GNUEABIHF_LINKER=arm-linux-gnueabihf-gcc
 export CARGO_TARGET_ARMV7_UNKNOWN_LINUX_GNUEABIHF_RUNNER="qemu-arm -L /usr/arm-linux-gnueabihf"
 # There is no 32-bit OpenCL here: the kernels' tests run on the machine's own architecture.
-export RAREFY_TEST_OPENCL=none
+export RAREFY_TEST_OPENCL=none RAREFY_TEST_CLANG=none
 cargo test --quiet --package rarefy --lib --no-default-features -Zbuild-std \
     --target armv7-unknown-linux-gnueabihf --target-dir target-arm32

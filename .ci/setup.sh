@@ -4,8 +4,8 @@
 # nothing is missing. To be sourced after lib.sh, from the repository's root:
 #
 #   . .ci/setup.sh run    Rust, and PoCL to run the kernels on the CPU
-#   . .ci/setup.sh test   also a JDK
-#   . .ci/setup.sh long   also oclgrind and clang, to check kernels
+#   . .ci/setup.sh test   also a JDK, and clang to check kernels as strict OpenCL C 1.2
+#   . .ci/setup.sh long   also oclgrind
 #
 # Rust is required. The rest is as good as it can be got: a test whose tool is missing fails and says what it needs.
 # Sets `opencl` to yes or no: whether there is an OpenCL loader with a driver.
@@ -29,9 +29,10 @@ opencl=no
 if [ "$1" = test ] || [ "$1" = long ]; then
     have javac || need_packages "the tests of the JNI library" default-jdk-headless ||
         say "without a JDK the tests of the JNI library fail; RAREFY_TEST_JVM=none waives them" >&2
+    have clang || have clang-14 || need_packages "the tests of the kernels without a device" clang ||
+        say "without clang the strict check of the kernels fails; RAREFY_TEST_CLANG=none waives it" >&2
 fi
 if [ "$1" = long ]; then
-    # oclgrind finds data races and uninitialised reads in kernels; clang checks them as strict OpenCL C 1.2. Each needs
-    # the headers of its own clang.
+    # oclgrind finds data races and uninitialised reads in kernels; it needs the headers of its own clang.
     need_packages "the long tests of the kernels" oclgrind clang || true
 fi

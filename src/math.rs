@@ -51,6 +51,7 @@ pub fn clamp(a: f32, lo: f32, hi: f32) -> f32 {
 
 /// Base-2 logarithm of a positive normal float, by a polynomial: about 1e-6 absolute error.
 #[inline]
+#[allow(clippy::excessive_precision)] // the digits of the kernel's constants
 pub fn log2_poly(x: f32) -> f32 {
     let bits = x.to_bits();
     // The mantissa is brought to [sqrt(1/2), sqrt(2)), where the series converges fast.
@@ -66,6 +67,7 @@ pub fn log2_poly(x: f32) -> f32 {
 
 /// 2 to the power of `x`, by a polynomial: about 2e-7 relative error; 0 below -126.
 #[inline]
+#[allow(clippy::excessive_precision, clippy::approx_constant)] // the digits of the kernel's constants
 pub fn exp2_poly(x: f32) -> f32 {
     if x < -126.0 {
         return 0.0;

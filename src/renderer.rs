@@ -75,14 +75,14 @@ pub struct Keep {
 }
 
 enum Device {
-    Twin(TwinBackend),
+    Twin(Box<TwinBackend>),
     OpenCl(Box<OpenClBackend>),
 }
 
 impl Device {
     fn backend(&mut self) -> &mut dyn Backend {
         match self {
-            Device::Twin(twin) => twin,
+            Device::Twin(twin) => twin.as_mut(),
             Device::OpenCl(device) => device.as_mut(),
         }
     }
@@ -340,7 +340,7 @@ impl Renderer {
 const DEFAULT_BUDGET_BYTES: u64 = 4 << 30;
 
 fn open_device(buffers: &Arc<SceneBuffers>, options: &RendererOptions, notices: &mut Vec<String>) -> Result<Device> {
-    let twin = || Device::Twin(TwinBackend::new(Arc::clone(buffers)));
+    let twin = || Device::Twin(Box::new(TwinBackend::new(Arc::clone(buffers))));
     match open_opencl(buffers, options) {
         Ok(Some(backend)) => Ok(Device::OpenCl(Box::new(backend))),
         Ok(None) => Ok(twin()),

@@ -75,15 +75,15 @@ impl SelfTest {
 /// A change that breaks `stage` on purpose, for negative controls.
 pub fn breaking_mutation(stage: Stage) -> Mutation {
     let (file, from, to) = match stage {
-        Stage::Step1 => ("step1.cl", "step.step_x * gx", "step.step_x * (gx ^ 1u)"),
-        Stage::Step2a => ("step2a.cl", "step.step_y * gy", "step.step_y * (gy ^ 1u)"),
+        Stage::Step1 => ("step1.cl", "step.step_x * gx", "step.step_x * (gx & ~1u)"),
+        Stage::Step2a => ("step2a.cl", "step.step_y * gy", "step.step_y * (gy & ~1u)"),
         Stage::Step2b => (
             "step2b.cl",
             "#define PACK_PIXEL(i) grid_item_pixel(&step, i)",
             "#define PACK_PIXEL(i) grid_item_pixel(&step, i ^ 1u)",
         ),
         Stage::Step2c => ("step2c.cl", "list[step.list_offset + item]", "list[step.list_offset]"),
-        Stage::Step3a => ("step3a.cl", "step.step_y * gy", "step.step_y * (gy ^ 1u)"),
+        Stage::Step3a => ("step3a.cl", "step.step_y * gy", "step.step_y * (gy & ~1u)"),
         Stage::Step3b => (
             "step3b.cl",
             "#define PACK_PIXEL(i) grid_item_pixel(&step, i)",

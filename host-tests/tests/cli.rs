@@ -81,7 +81,7 @@ fn full_and_adaptive_pictures_differ_and_two_runs_do_not() {
 #[test]
 fn compare_writes_the_contract() {
     let folder = folder();
-    let run = rarefy(&folder, "compare spheres --device cpu --size 64x48 --frames 1 --json - -o pictures").expect(0);
+    let run = rarefy(&folder, "compare spheres --device cpu --size 320x240 --frames 1 --json - -o pictures").expect(0);
     let value = json(&run.stdout);
     let contract =
         set("scene triangles width height samples_per_axis block frames device build full adaptive ray_traced_ratio \
@@ -106,9 +106,9 @@ fn compare_writes_the_contract() {
         set("step1 step2a step2b step2c step3a step3b step3c step4 other")
     );
     assert_eq!(keys(&value["adaptive"]["failed_tests"]), set("g1 g2 g3 g4 tx sh gc"));
-    assert_eq!(value["full"]["rays"]["primary"], 64 * 48);
+    assert_eq!(value["full"]["rays"]["primary"], 320 * 240);
     let pixels = value["adaptive"]["pixels"].as_object().unwrap().values().map(|v| v.as_u64().unwrap()).sum::<u64>();
-    assert_eq!(pixels, 64 * 48);
+    assert_eq!(pixels, 320 * 240);
     assert!(value["psnr_db"].as_f64().unwrap() > 20.0 && value["work_speedup"].as_f64().unwrap() > 1.0);
     let wanted = ["adaptive.png", "class.png", "difference.png", "fail-mask.png", "full.png"];
     assert_eq!(entries(&folder.path().join("pictures")), wanted);

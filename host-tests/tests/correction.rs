@@ -341,6 +341,9 @@ const NO_STEP: StepParams = StepParams {
     tests: 0,
     flags: 0,
     scan_group: 0,
+    lenient_tests: 0,
+    t_visible: 0,
+    pad: [0; 2],
 };
 
 #[test]

@@ -49,7 +49,9 @@ impl Shot {
             Shot::Large => (options.width, options.height) = (210, 150),
             Shot::Rods | Shot::RodsSwept => (options.width, options.height) = (100, 75),
             Shot::Strictest => options.tolerances.t_pos = 0.0,
-            Shot::Zoo | Shot::Room => {}
+            // Large enough that smooth glass, slopes and faint shadows are interpolated too.
+            Shot::Zoo => (options.width, options.height, options.depth) = (180, 136, 3),
+            Shot::Room => {}
         }
         if self == Shot::RodsSwept {
             options.correction_method = CorrectionMethod::Sweeps;
@@ -99,14 +101,14 @@ const ENTRY_POINTS: &[Mutant] = &[
 #[rustfmt::skip]
 const CORRECTION: &[Mutant] = &[
     ("step4.cl", " && from_class != CLASS_CORRECTED", "", Shot::Rods, Kernel::Step4Mark),
-    ("step4.cl", "attributes[PLANE_OBJECT * pitch + at] != ", "attributes[PLANE_OBJECT * pitch + at] == ", Shot::Rods, Kernel::Step4Mark),
-    ("step4.cl", "(step->flags & STEP_COMPARE_SHADOW)", "(step->flags & STEP_GCOL_LINEAR)", Shot::Rods, Kernel::Step4Mark),
+    ("common/attributes.clh", "if (a->object != b->object) return true;", "if (a->object == b->object) return true;", Shot::Rods, Kernel::Step4Mark),
+    ("common/attributes.clh", "(step->flags & STEP_COMPARE_SHADOW)", "(step->flags & STEP_GCOL_LINEAR)", Shot::Rods, Kernel::Step4Mark),
     ("step4.cl", "case 0u: return x > 0u ?", "case 0u: return x > 25u ?", Shot::Rods, Kernel::Step4Mark),
     ("step4.cl", "case 1u: return x + 1u < frame->width ?", "case 1u: return x + 25u < frame->width ?", Shot::Rods, Kernel::Step4Mark),
     ("step4.cl", "case 2u: return y > 0u ?", "case 2u: return y > 19u ?", Shot::Rods, Kernel::Step4Mark),
     ("step4.cl", "default: return y + 1u < frame->height ?", "default: return y + 19u < frame->height ?", Shot::Rods, Kernel::Step4Mark),
-    ("step4.cl", "+ pixel_plane_index(frame, pixel)] == i", "+ pixel_plane_index(frame, pixel)] != i", Shot::Rods, Kernel::Step4Count),
-    ("common/trace.clh", "changed ? CLASS_CORRECTED : CLASS_CONFIRMED", "CLASS_CORRECTED", Shot::Rods, Kernel::Step4Trace),
+    ("step4.cl", "attributes[PLANE_CLAIM * pitch + to] == i", "attributes[PLANE_CLAIM * pitch + to] != i", Shot::Rods, Kernel::Step4Count),
+    ("common/trace.clh", "? CLASS_CORRECTED : CLASS_CONFIRMED", "? CLASS_CORRECTED : CLASS_CORRECTED", Shot::Rods, Kernel::Step4Trace),
     ("common/trace.clh", "out_attributes[PLANE_CLAIM * pitch + at] = NO_CLAIM", "out_attributes[PLANE_CLAIM * pitch + at] = 0u", Shot::Rods, Kernel::Step4Trace),
     ("common/trace.clh", "pixel_class == CLASS_BASE ? 0u : out_attributes[PLANE_CLASS * pitch + at] & ~CLASS_MASK", "0u", Shot::Zoo, Kernel::Step2c),
 ];
@@ -116,10 +118,10 @@ const CORRECTION: &[Mutant] = &[
 const TRAVERSAL: &[Mutant] = &[
     ("common/kdtree.clh", "#define WIDEN_UP 1.0000005f", "#define WIDEN_UP 0.9f", Shot::Room, Kernel::Step1),
     ("common/kdtree.clh", "#define WIDEN_DOWN 0.9999995f", "#define WIDEN_DOWN 1.1f", Shot::Room, Kernel::Step1),
-    ("common/kdtree.clh", "lower + sign[axis]", "lower + 1u - sign[axis]", Shot::Zoo, Kernel::Step1),
+    ("common/kdtree.clh", "| side[axis]", "| (side[axis] ^ 2u)", Shot::Zoo, Kernel::Step1),
     ("common/kdtree.clh", "if (depth == 0u || best.t < t_min)", "if (depth == 0u)", Shot::Zoo, Kernel::Step1),
     ("common/kdtree.clh", "id < best.triangle", "id > best.triangle", Shot::Zoo, Kernel::Step1),
-    ("common/kdtree.clh", "u + v <= 1.0f", "u + v <= 1.1f", Shot::Room, Kernel::Step1),
+    ("common/kdtree.clh", "fabs(us + vs) <= fabs(det)", "fabs(us + vs) <= 1.1f * fabs(det)", Shot::Room, Kernel::Step1),
     ("common/kdtree.clh", ">> 24) < 128u", ">> 24) >= 128u", Shot::Zoo, Kernel::Step1),
     ("common/kdtree.clh", "(!(bits & TRIANGLE_CUTOUT) || !is_hole(", "((bits & TRIANGLE_CUTOUT) || !is_hole(", Shot::Zoo, Kernel::Step1),
     ("common/kdtree.clh", "if (!(as_uint(v0.w) & TRIANGLE_CUTOUT) ||", "if (1 ||", Shot::Zoo, Kernel::Step1),
@@ -188,7 +190,10 @@ const SIMILARITY: &[Mutant] = &[
     ("common/similarity.clh", "a < t_tex && b > 1.0f - t_tex", "a < t_tex && b < 1.0f - t_tex", Shot::Room, Kernel::Step2a),
     ("common/similarity.clh", "a->shadow_bits != b->shadow_bits", "(a->shadow_bits ^ b->shadow_bits) > 1u", Shot::Zoo, Kernel::Step2a),
     ("common/similarity.clh", "<= step->t_gcol", "<= 8.0f * step->t_gcol", Shot::Zoo, Kernel::Step3a),
-    ("common/similarity.clh", "!(flags & STEP_GCOL_LINEAR)", "(flags & STEP_GCOL_LINEAR)", Shot::Zoo, Kernel::Step2a),
+    ("common/attributes.clh", "!(flags & STEP_GCOL_LINEAR)", "(flags & STEP_GCOL_LINEAR)", Shot::Zoo, Kernel::Step2a),
+    ("common/similarity.clh", "(mask & ~step->lenient_tests)", "mask", Shot::Zoo, Kernel::Step3a),
+    ("common/attributes.clh", "(p > q ? p - q : q - p) >= t_visible", "(p > q ? p - q : 0u) >= t_visible", Shot::Zoo, Kernel::Step3a),
+    ("common/attributes.clh", "(step->flags & STEP_COMPARE_SHADING)", "(step->flags & STEP_GCOL_LINEAR)", Shot::Zoo, Kernel::Step4Mark),
     ("common/similarity.clh", "wa = zb / (za + zb)", "wa = za / (za + zb)", Shot::Zoo, Kernel::Step3a),
     ("common/similarity.clh", "m.normal = normalize3(a->normal * wa + b->normal * wb)", "m.normal = a->normal * wa + b->normal * wb", Shot::Zoo, Kernel::Step2a),
     ("common/similarity.clh", "m.gcol = a->gcol * wa + b->gcol * wb", "m.gcol = a->gcol", Shot::Zoo, Kernel::Step3a),

@@ -24,9 +24,12 @@ fn cross_float(o: Vec3, d: Vec3, [a, b, c]: [Vec3; 3]) -> Option<(f32, f32, f32)
     let dot = |a: Vec3, b: Vec3| a.x * b.x + a.y * b.y + a.z * b.z;
     let (e1, e2, s) = (b - a, c - a, o - a);
     let (p, q) = (d.cross(e2), s.cross(e1));
-    let scale = 1.0 / dot(e1, p);
-    let (u, v, t) = (dot(s, p) * scale, dot(d, q) * scale, dot(e2, q) * scale);
-    (u >= 0.0 && u <= 1.0 && v >= 0.0 && u + v <= 1.0 && t > 0.0 && t < 1e30).then_some((t, u, v))
+    // Weights are compared before the division: where they lie on an edge, that decides.
+    let (det, us, vs) = (dot(e1, p), dot(s, p), dot(d, q));
+    let inside = us * det >= 0.0 && us.abs() <= det.abs() && vs * det >= 0.0 && (us + vs).abs() <= det.abs();
+    let scale = 1.0 / det;
+    let t = dot(e2, q) * scale;
+    (inside && t > 0.0 && t < 1e30).then_some((t, us * scale, vs * scale))
 }
 
 /// The judge: how far inside the triangle the ray passes (least barycentric weight, negative outside), and how much of
@@ -45,7 +48,7 @@ fn judge(o: Vec3, d: Vec3, [a, b, c]: [Vec3; 3]) -> (f64, f64) {
 
 fn on_edge(scene: &Scene, o: Vec3, d: Vec3, id: usize) -> bool {
     let (inside, rounding) = judge(o, d, corners(scene, id));
-    !(inside > rounding)
+    inside <= rounding || inside.is_nan() || rounding.is_nan()
 }
 
 /// Is the texel at the hit a hole? `None` too near to a texel's border to say.

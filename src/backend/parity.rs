@@ -70,6 +70,8 @@ impl<'a> ParityBackend<'a> {
         })
     }
 
+    // Written so that NaN is wrong.
+    #[allow(clippy::neg_cmp_op_on_partial_ord)]
     fn is_wrong(&self, buffer: FrameBuffer, at: usize, a: u32, b: u32) -> bool {
         match buffer {
             FrameBuffer::Attributes if at / self.pitch <= PLANE_GCOL_B as usize => {

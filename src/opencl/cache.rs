@@ -19,7 +19,9 @@ const MOST_ENTRIES: usize = 256;
 /// Where compiled programs are kept.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub enum CacheFolder {
-    /// `RAREFY_CACHE_DIR`, else `rarefy` in `XDG_CACHE_HOME`, else `.cache/rarefy` in the home folder, else nowhere.
+    /// `RAREFY_CACHE_DIR`, else `rarefy` in `XDG_CACHE_HOME`, else `.cache/rarefy` in the home folder, else nowhere. On
+    /// PoCL nowhere without `RAREFY_CACHE_DIR`: it keeps compiled kernels itself, and gives out a program's binary only
+    /// after it has compiled all kernels once more for any size of work-group.
     #[default]
     Usual,
     /// This folder, made when needed. An app gives its own cache folder.
@@ -70,8 +72,15 @@ impl Key {
 }
 
 impl Cache {
-    pub fn new(folder: &CacheFolder) -> Self {
-        Cache { folder: folder.path() }
+    /// `driver_caches`: the driver keeps compiled kernels itself.
+    pub fn new(folder: &CacheFolder, driver_caches: bool) -> Self {
+        let asked_for = *folder != CacheFolder::Usual || std::env::var_os(FOLDER_VARIABLE).is_some();
+        Cache { folder: if driver_caches && !asked_for { None } else { folder.path() } }
+    }
+
+    /// Whether anything is kept.
+    pub fn is_on(&self) -> bool {
+        self.folder.is_some()
     }
 
     fn entry(&self, key: &Key) -> Option<PathBuf> {
@@ -153,7 +162,7 @@ mod tests {
 
     fn scratch() -> (tempfile::TempDir, Cache) {
         let folder = tempfile::tempdir().unwrap();
-        let cache = Cache::new(&CacheFolder::At(folder.path().join("sub").join("cache")));
+        let cache = Cache::new(&CacheFolder::At(folder.path().join("sub").join("cache")), false);
         (folder, cache)
     }
 
@@ -200,7 +209,7 @@ mod tests {
         let file = folder.path().join("file");
         std::fs::write(&file, "in the way").unwrap();
         let key = Key::new(&["a"]);
-        for cache in [Cache::new(&CacheFolder::At(file.join("sub"))), Cache::new(&CacheFolder::Off)] {
+        for cache in [Cache::new(&CacheFolder::At(file.join("sub")), false), Cache::new(&CacheFolder::Off, true)] {
             cache.store(&key, b"binary");
             assert_eq!(cache.load(&key), None);
         }

@@ -148,6 +148,9 @@ pub fn open_with(options: &OpenOptions) -> Result<Door> {
         enqueues: 0,
         fail_enqueue: options.fail_enqueue,
     };
+    // PoCL has a cache of its own, unless the variable says otherwise.
+    let pocl_caches = std::env::var_os("POCL_KERNEL_CACHE").is_none_or(|value| value != "0");
+    let driver_caches = device.info.platform.contains("Portable Computing Language") && pocl_caches;
     let choices = options.profile.as_ref().unwrap_or(&device.profile).choices().clone();
     Ok(Door {
         shared: Arc::new(Shared {
@@ -159,7 +162,7 @@ pub fn open_with(options: &OpenOptions) -> Result<Door> {
             budget_bytes: options.memory_budget_bytes,
             memory: Mutex::new(MemoryUse::default()),
         }),
-        cache: Cache::new(&options.cache),
+        cache: Cache::new(&options.cache, driver_caches),
         state: Mutex::new(state),
         choices,
         profile_name: options.profile.as_ref().map(|profile| profile.name().to_string()),

@@ -101,7 +101,9 @@ impl Door {
             }
         }
         let program = self.build_source(source, &c_options)?;
-        if let Some(binary) = binary(&program) {
+        if self.cache.is_on()
+            && let Some(binary) = binary(&program)
+        {
             self.cache.store(&key, &binary);
         }
         Ok(make(program, false))

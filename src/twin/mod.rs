@@ -4,6 +4,9 @@
 //! A twin is a function of one work-item (or, for kernels with barriers, one work-group) over the same buffers, written
 //! like the kernel so that the two can be read side by side. [`run`] is the launch: all items of a kernel, in parallel.
 
+// Twins compare as their kernels do, so that NaN takes the same branch.
+#![allow(clippy::neg_cmp_op_on_partial_ord)]
+
 pub mod pack;
 pub mod planes;
 pub mod scene_args;

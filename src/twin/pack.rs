@@ -52,11 +52,10 @@ pub fn scatter(chunk: u32, step: &StepParams, masks: &Words, sums: &Words, list:
     if chunk >= chunk_count {
         return;
     }
-    let mut next = step.list_offset + base(step, sums, chunk, chunk_count);
     let mask = masks.get(chunk);
-    for k in (0..32).filter(|k| mask >> k & 1 != 0) {
-        list.set(next, pixel(chunk * 32 + k));
-        next += 1;
+    let first = step.list_offset + base(step, sums, chunk, chunk_count);
+    for (at, k) in (first..).zip((0..32).filter(|k| mask >> k & 1 != 0)) {
+        list.set(at, pixel(chunk * 32 + k));
     }
 }
 

@@ -106,7 +106,7 @@ impl<'a> Walk<'a> {
         let (az, bz) = ((lo[2] - o.z) * inv[2], (hi[2] - o.z) * inv[2]);
         let t_min = max2(0.0, max2(min2(ax, bx), max2(min2(ay, by), min2(az, bz))) * WIDEN_DOWN);
         let t_max = min2(t_limit, min2(max2(ax, bx), min2(max2(ay, by), max2(az, bz))) * WIDEN_UP);
-        (t_min <= t_max).then(|| Walk {
+        (t_min <= t_max).then_some(Walk {
             nodes: scene.nodes,
             org: [o.x, o.y, o.z, 0.0],
             inv,
