@@ -41,8 +41,7 @@ fn layers_are_what_they_were() {
     for name in SCENES {
         let options = RendererOptions { device: DeviceChoice::Cpu, ..RendererOptions::default() };
         let mut renderer = Renderer::new(builtin::to_scene(name).unwrap(), &options, &|_, _| ()).unwrap();
-        let options =
-            RenderOptions { width: WIDTH, height: HEIGHT, mode: Mode::Adaptive, ..RenderOptions::default() };
+        let options = RenderOptions { width: WIDTH, height: HEIGHT, mode: Mode::Adaptive, ..RenderOptions::default() };
         let frame = renderer.render_exactly(&options, Keep { attributes: true, counters: true }).unwrap();
         for layer in LAYERS {
             let drawn = layers::draw(Layer::from_name(layer).unwrap(), &mut renderer, &frame).unwrap();
