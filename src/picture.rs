@@ -35,13 +35,7 @@ pub fn read_rgb8(path: impl AsRef<Path>) -> Result<(u32, u32, Vec<u32>)> {
     let mut decoder = reader.into_decoder().map_err(|e| decode_error(path, e))?;
     let (width, height) = decoder.dimensions();
     if width > MAX_SIDE || height > MAX_SIDE {
-        return Err(Error::LimitExceeded {
-            what: path.display().to_string(),
-            wanted: format!("{width}x{height} pixels"),
-            limit: "picture side".to_owned(),
-            allowed: format!("{MAX_SIDE}x{MAX_SIDE} pixels"),
-            remedy: "scale the picture down".to_owned(),
-        });
+        return Err(too_large(path, format!("{width}x{height} pixels")));
     }
     let mut limits = Limits::no_limits();
     limits.max_image_width = Some(MAX_SIDE);
@@ -164,11 +158,23 @@ fn broken(path: &Path, message: impl Into<String>) -> Error {
     Error::Image { path: path.to_path_buf(), message: message.into() }
 }
 
+fn too_large(path: &Path, wanted: String) -> Error {
+    Error::LimitExceeded {
+        what: path.display().to_string(),
+        wanted,
+        limit: "picture side".to_owned(),
+        allowed: format!("{MAX_SIDE}x{MAX_SIDE} pixels"),
+        remedy: "scale the picture down".to_owned(),
+    }
+}
+
 fn decode_error(path: &Path, error: ImageError) -> Error {
     match error {
         // A file that ends early is damaged; that is not a failure of the system.
         ImageError::IoError(e) if e.kind() != io::ErrorKind::UnexpectedEof => Error::io(path, e),
         ImageError::IoError(_) => broken(path, "the file ends early"),
+        // Where addresses have 32 bits the decoder itself refuses what they cannot reach.
+        ImageError::Limits(_) => too_large(path, "more pixels than addresses reach".to_owned()),
         ImageError::Unsupported(e) => broken(path, format!("only PNG and JPEG are supported: {e}")),
         other => broken(path, other.to_string()),
     }
