@@ -33,7 +33,7 @@ typedef struct {
   uint phase_height;    // ceil(height / block)
   uint plane_pitch;     // words of one attribute plane: block * block * phase_width * phase_height
   uint light_count;     // at most 32
-  uint depth_limit;     // most secondary rays in a chain
+  uint depth_limit;     // most secondary rays in a chain, straight ones through panes not counted
   float epsilon;        // offset of secondary and shadow rays along the geometric normal, scene units
   uint pad0;
   uint pad1;

@@ -120,6 +120,9 @@ shared_constants! {
     /// Surface kind: a pane without thickness.
     SURFACE_THIN_GLASS = 3;
 
+    /// A chain of secondary rays ends behind this many panes of thin glass.
+    PANES_MOST = 16;
+
     /// Triangle bit: a cut-out texture may make holes.
     TRIANGLE_CUTOUT = 1;
     /// Triangle bit: casts no shadow (glass).

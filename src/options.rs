@@ -124,7 +124,7 @@ pub struct RenderOptions {
     pub mode: Mode,
     /// Side of the base blocks: 2 (paper) or 4.
     pub block: u32,
-    /// Most secondary rays in a chain, 0 to 64.
+    /// Most secondary rays in a chain, 0 to 64; straight ones through panes of thin glass do not count.
     pub depth: u32,
     /// What post-correction compares.
     pub correction: Correction,

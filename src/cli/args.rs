@@ -156,7 +156,7 @@ pub struct DrawArgs {
     /// Side of the base blocks: 2, or 4 for two levels.
     #[arg(long, default_value_t = 2)]
     pub blocks: u32,
-    /// Most secondary rays in a chain.
+    /// Most secondary rays in a chain; straight ones through panes of thin glass do not count.
     #[arg(long, default_value_t = 4)]
     pub depth: u32,
     /// Whose defaults count for the options below.

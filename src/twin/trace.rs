@@ -164,7 +164,9 @@ pub fn gather_secondary(scene: &SceneArgs, p: &SurfacePoint, d: Vec3, work: &mut
         let mut c = Chain { origin: p.position, direction: d, weight: Vec3::ONE, inside: false, refracted: false };
         let mut at = *p;
         let mut split_reflection = chains == 2 && chain == 0;
-        for _ in 0..scene.frame.depth_limit {
+        let (mut spent, mut panes) = (0, 0);
+        while spent < scene.frame.depth_limit && panes < PANES_MOST {
+            let at_pane = scene.materials[at.material as usize].surface == SURFACE_THIN_GLASS;
             if !continue_chain(scene, &at, split_reflection, &mut c) {
                 break;
             }
@@ -172,6 +174,11 @@ pub fn gather_secondary(scene: &SceneArgs, p: &SurfacePoint, d: Vec3, work: &mut
                 break;
             }
             split_reflection = false;
+            if at_pane && c.refracted {
+                panes += 1;
+            } else {
+                spent += 1;
+            }
             if c.refracted {
                 work.refraction_rays += 1;
             } else {
