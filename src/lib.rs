@@ -21,6 +21,7 @@
 //! ```
 
 pub mod backend;
+pub mod bands;
 pub mod builtin;
 pub mod camera;
 pub mod compare;
@@ -40,6 +41,7 @@ pub mod pipeline;
 pub mod profiles;
 pub mod renderer;
 pub mod report;
+pub mod resolve;
 pub mod scene;
 pub mod scene_buffers;
 pub mod selftest;
