@@ -51,16 +51,19 @@ pub fn resolve(words: &[u32], width: u32, height: u32, samples: u32) -> Vec<u32>
 mod tests {
     use super::*;
 
+    fn grey(byte: u32) -> u32 {
+        (byte * 0x01_0101) | 0xff00_0000
+    }
+
     #[test]
     fn equal_samples_stay_what_they_are() {
         for samples in [1, 2, 4] {
-            let words: Vec<u32> = (0..256u32)
-                .flat_map(|byte| std::iter::repeat_n(byte * 0x01_0101 | 0xff00_0000, (samples * samples) as usize))
-                .collect();
+            let words: Vec<u32> =
+                (0..256u32).flat_map(|byte| std::iter::repeat_n(grey(byte), (samples * samples) as usize)).collect();
             // One column of pixels would interleave its rows: each value fills one row of blocks of its own.
             let pixels = resolve(&words, 1, 256, samples);
             for (byte, pixel) in pixels.iter().enumerate() {
-                assert_eq!(*pixel, byte as u32 * 0x01_0101 | 0xff00_0000);
+                assert_eq!(*pixel, grey(byte as u32));
             }
         }
     }
