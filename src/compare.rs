@@ -8,6 +8,9 @@ use crate::metrics::{self, Quality, Rgb8, WrongPixels};
 use crate::options::{Mode, RenderOptions};
 use crate::renderer::Renderer;
 
+/// Side of the frames that only build programs, in pixels.
+const WARM_UP_SIDE: u32 = 16;
+
 /// What a comparison found.
 #[derive(Debug, Clone)]
 pub struct Comparison {
@@ -90,18 +93,21 @@ pub fn compare(
     let classes = renderer.plane(PLANE_CLASS)?;
     progress(2.0 / steps);
 
-    let mut rounds = Rounds::default();
-    let mut adaptive = renderer.render_exactly(&adaptive_options, Keep::default())?;
-    let mut full_picture = full.pixels;
-    if frames > 0 {
-        full_picture = renderer.render_exactly(&full_options, Keep::default())?.pixels;
+    // Programs without counters are built in frames that cost nothing else.
+    for mode in [&full_options, &adaptive_options] {
+        let small = RenderOptions { width: WARM_UP_SIDE, height: WARM_UP_SIDE, ..mode.clone() };
+        renderer.render_exactly(&small, Keep::default())?;
     }
+    let mut rounds = Rounds::default();
+    let (mut full_picture, mut adaptive) = (full.pixels, counted.clone());
     for round in 0..frames {
-        let full_ms = renderer.render_exactly(&full_options, Keep::default())?.stats.frame_ms;
+        let full = renderer.render_exactly(&full_options, Keep::default())?;
         adaptive = renderer.render_exactly(&adaptive_options, Keep::default())?;
-        rounds.add(full_ms, &adaptive.stats);
+        rounds.add(full.stats.frame_ms, &adaptive.stats);
+        full_picture = full.pixels;
         progress((3 + round) as f32 / steps);
     }
+
     let (width, height) = (options.width, options.height);
     let interpolated = pixels_with_interpolated_samples(&classes, options);
     let quality = metrics::compare_interpolated(

@@ -64,6 +64,13 @@ impl BufferSizes {
         })
     }
 
+    /// Whether buffers of these sizes serve where `wanted` are asked for.
+    pub fn hold(&self, wanted: &BufferSizes) -> bool {
+        // Items that find a counter buffer fill it.
+        (self.counters > 0) == (wanted.counters > 0)
+            && self.each().into_iter().zip(wanted.each()).all(|(have, want)| have >= want)
+    }
+
     /// The largest of them, in bytes.
     pub fn largest_bytes(&self) -> u64 {
         self.each().into_iter().map(|words| 4 * words as u64).max().unwrap_or(0)

@@ -185,7 +185,7 @@ impl Backend for OpenClBackend {
     }
 
     fn begin(&mut self, frame: &FrameParams, sizes: &BufferSizes) -> Result<()> {
-        if self.buffers.as_ref().map(|(s, _)| s) != Some(sizes) {
+        if !self.buffers.as_ref().is_some_and(|(existing, _)| existing.hold(sizes)) {
             // Old buffers go first: both together may not fit.
             self.buffers = None;
             let door = &self.door;

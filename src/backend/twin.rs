@@ -84,7 +84,7 @@ impl Backend for TwinBackend {
     }
 
     fn begin(&mut self, frame: &FrameParams, sizes: &BufferSizes) -> Result<()> {
-        if self.sizes != Some(*sizes) {
+        if !self.sizes.is_some_and(|existing| existing.hold(sizes)) {
             self.buffers = FrameBuffers {
                 attributes: Words::zeroed(sizes.attributes),
                 counters: Words::zeroed(sizes.counters),
