@@ -149,3 +149,22 @@ fn any_size_from_one_pixel_on() {
         }
     }
 }
+
+#[test]
+#[ignore = "long: real scenes in bands of five heights"]
+fn real_scenes_are_the_same_in_bands() {
+    let folder = rarefy_host_tests::command::root().join("../shared/scenes");
+    for name in ["classroom", "bathroom"] {
+        if !folder.join(name).is_dir() {
+            println!("skipped: ../shared/scenes is not here");
+            continue;
+        }
+        for device in devices() {
+            let scene = rarefy::scene::load(&folder.join(name), &|_, _| ()).unwrap();
+            let mut renderer = renderer(scene, device);
+            let options = RenderOptions { width: 400, height: 301, ..RenderOptions::default() };
+            assert_same_in_bands(&mut renderer, &options, &[2, 10, 32, 76, 200]);
+            assert_same_in_bands(&mut renderer, &RenderOptions { block: 4, ..options.clone() }, &[4, 40, 150]);
+        }
+    }
+}
