@@ -1,20 +1,34 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // step4 (paper, post-correction): from every traced adaptive pixel, hit information spreads to its four neighbours;
 // an interpolated neighbour with another object (or, with STEP_COMPARE_SHADOW, other shadow bits; with
-// STEP_COMPARE_SHADING, another normal or reflected colour; where they look different) gets a ray, and if that finds something other than
-// interpolation had, the pixel spreads in turn.
+// STEP_COMPARE_SHADING, another normal or reflected colour; where they look different) gets a ray, and if that finds
+// something other than interpolation had, the pixel spreads in turn. With STEP_THIN_ONLY the edges of thick things do not
+// spread: only the sources of the first round are asked, before any pixel is corrected, so that order decides nothing.
 //
 // `converged`: rounds of mark, count, scan, scatter, trace until no pixel is listed. A round looks only at the
 // neighbours of the pixels that the last round traced, so the fired set is the least fixed point of the rule, the same
 // for any order. `sweeps`: the paper's one round, each row there and back, then each column (step4_sweep).
 // Inputs: frame, scene, attribute planes, list entries [source_offset ..). Outputs: attribute planes, class CORRECTED
 // (changed) or CONFIRMED, colour, list entries from list_offset on.
-// Invariant: only INTERPOLATED pixels are written, each once. Cost: 4 class and object words per source, one ray tree
+// Invariant: only INTERPOLATED pixels are written, each once. Cost: 4 class words and up to 8 attribute vectors per source, one ray tree
 // per listed pixel.
 // Twin: src/twin/step4.rs.
 #include "types.h"
 #include "common/pack.clh"
 #include "common/trace.clh"
+
+// Does what pixel (x, y) hit fill the three pixels on its far side from (nx, ny) too? Then it is thick and, if its edge
+// is straight, ends here: the references of (nx, ny) would have met it otherwise.
+static inline bool is_thick(__constant FrameParams *frame, const StepParams *step, __global const uint *attributes,
+                            __global const uint *color, const Attributes *a, uint x, uint y, uint nx, uint ny) {
+  for (uint k = 0u; k < 3u; ++k) {
+    const uint bx = 2u * x - nx + (k - 1u) * (ny - y), by = 2u * y - ny + (k - 1u) * (nx - x);
+    if (bx >= frame->width || by >= frame->height) return false;
+    const Attributes b = load_attributes(attributes, frame->plane_pitch, plane_index(frame, bx, by));
+    if (hits_differ(step, a, &b, color[y * frame->width + x], color[by * frame->width + bx])) return false;
+  }
+  return true;
+}
 
 // Does pixel (x, y) spread to its neighbour (nx, ny): is it a source, is that interpolated, and is it something else?
 static inline bool spreads(__constant FrameParams *frame, const StepParams *step, __global const uint *attributes,
@@ -24,7 +38,10 @@ static inline bool spreads(__constant FrameParams *frame, const StepParams *step
   if (from_class != CLASS_TRACED && from_class != CLASS_CORRECTED) return false;
   if ((attributes[PLANE_CLASS * pitch + to] & CLASS_MASK) != CLASS_INTERPOLATED) return false;
   const Attributes a = load_attributes(attributes, pitch, at), b = load_attributes(attributes, pitch, to);
-  return hits_differ(step, &a, &b, color[y * frame->width + x], color[ny * frame->width + nx]);
+  if (!hits_differ(step, &a, &b, color[y * frame->width + x], color[ny * frame->width + nx])) return false;
+  // What interpolation had missed is thin, and reflected patterns have no straight edges: both spread anyway.
+  return !(step->flags & STEP_THIN_ONLY) || from_class == CLASS_CORRECTED || !surfaces_differ(step, &a, &b) ||
+         !is_thick(frame, step, attributes, color, &a, x, y, nx, ny);
 }
 
 // Item i looks from source i / 4 in direction i % 4: left, right, up, down. NO_PIXEL beyond the picture.

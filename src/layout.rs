@@ -110,6 +110,8 @@ shared_constants! {
     STEP_GCOL_LINEAR = 8;
     /// Step flag: step4 compares normals (by `t_norm`) and reflected colours (by `t_gcol`) too.
     STEP_COMPARE_SHADING = 16;
+    /// Step flag: in step4 traced pixels at the edge of something thick do not spread.
+    STEP_THIN_ONLY = 32;
 
     /// Surface kind: diffuse and highlight only.
     SURFACE_OPAQUE = 0;

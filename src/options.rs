@@ -144,6 +144,9 @@ pub struct RenderOptions {
     pub lenient_tests: u32,
     /// From which difference of a colour channel of 0 to 255 on two references look different; 0 makes no test lenient.
     pub t_visible: u32,
+    /// Post-correction by [`CorrectionMethod::Converged`]: traced pixels at the edge of something thick do not spread;
+    /// beyond the paper.
+    pub correction_thin_only: bool,
     /// Post-correction: from which difference of a colour channel of 0 to 255 on a change within one object counts.
     pub correction_t_visible: u32,
     /// Post-correction: least dot product of normals that are taken to be the same.
@@ -169,6 +172,7 @@ impl Default for RenderOptions {
             tests: FAIL_ALL,
             lenient_tests: FAIL_SH,
             t_visible: 8,
+            correction_thin_only: true,
             correction_t_visible: 8,
             correction_t_norm: 0.9,
             correction_t_gcol: 0.1,
@@ -189,6 +193,7 @@ impl RenderOptions {
             gcol_linear: true,
             lenient_tests: 0,
             t_visible: 0,
+            correction_thin_only: false,
             correction_t_visible: 0,
             ..RenderOptions::default()
         }

@@ -183,8 +183,11 @@ fn correct(backend: &mut dyn Backend, frame: &FrameParams, options: &RenderOptio
         Correction::All => STEP_STORE | STEP_COMPARE_SHADOW | STEP_COMPARE_SHADING,
     };
     let gcol_linear = if options.gcol_linear { STEP_GCOL_LINEAR } else { 0 };
+    // Lines are swept side by side: what lies beside a line may be changing.
+    let converged = options.correction_method == CorrectionMethod::Converged;
+    let thin_only = if options.correction_thin_only && converged { STEP_THIN_ONLY } else { 0 };
     let step = StepParams {
-        flags: flags | gcol_linear,
+        flags: flags | gcol_linear | thin_only,
         t_visible: options.correction_t_visible,
         t_norm: options.correction_t_norm,
         t_gcol: options.correction_t_gcol,

@@ -1,10 +1,33 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Twin of `kernels/step4.cl`: post-correction.
 
-use super::planes::{hits_differ, load_attributes, plane_index};
+use super::planes::{Attributes, hits_differ, load_attributes, plane_index, surfaces_differ};
 use super::trace::trace_pixel;
 use super::{FrameBuffers, SceneArgs, pack};
 use crate::layout::*;
+
+/// Does what pixel `(x, y)` hit fill the three pixels on its far side from `(nx, ny)` too?
+fn is_thick(
+    frame: &FrameParams,
+    step: &StepParams,
+    buffers: &FrameBuffers,
+    a: &Attributes,
+    (x, y): (u32, u32),
+    (nx, ny): (u32, u32),
+) -> bool {
+    let color = |x: u32, y: u32| buffers.color.get(y * frame.width + x);
+    // Pixels left of or above the picture wrap around to beyond it, as in the kernel.
+    let (dx, dy) = (nx.wrapping_sub(x), ny.wrapping_sub(y));
+    [u32::MAX, 0, 1].into_iter().all(|k| {
+        let bx = x.wrapping_sub(dx).wrapping_add(k.wrapping_mul(dy));
+        let by = y.wrapping_sub(dy).wrapping_add(k.wrapping_mul(dx));
+        if bx >= frame.width || by >= frame.height {
+            return false;
+        }
+        let b = load_attributes(&buffers.attributes, frame.plane_pitch, plane_index(frame, bx, by));
+        !hits_differ(step, a, &b, color(x, y), color(bx, by))
+    })
+}
 
 fn spreads(
     frame: &FrameParams,
@@ -25,7 +48,13 @@ fn spreads(
     }
     let (a, b) = (load_attributes(planes, pitch, at), load_attributes(planes, pitch, to));
     let color = |x: u32, y: u32| buffers.color.get(y * frame.width + x);
-    hits_differ(step, &a, &b, color(x, y), color(nx, ny))
+    if !hits_differ(step, &a, &b, color(x, y), color(nx, ny)) {
+        return false;
+    }
+    step.flags & STEP_THIN_ONLY == 0
+        || from_class == CLASS_CORRECTED
+        || !surfaces_differ(step, &a, &b)
+        || !is_thick(frame, step, buffers, &a, (x, y), (nx, ny))
 }
 
 fn neighbour(frame: &FrameParams, step: &StepParams, buffers: &FrameBuffers, i: u32) -> u32 {
