@@ -100,31 +100,29 @@ fn grid(frame: &FrameParams, origin: (u32, u32), step: (u32, u32)) -> StepParams
     }
 }
 
-/// The two classes of adaptive pixels at one stride: A1 between two references in a row, A2 between two in a column.
-fn adaptive_grids(frame: &FrameParams, stride: u32, options: &RenderOptions, extent: f32) -> [AdaptiveGrid; 2] {
+/// The classes of adaptive pixels at one stride: A1 between two references in a row, A2 between two in a column; the odd
+/// columns of A2 by themselves where they may also use what the even ones found.
+fn adaptive_grids(frame: &FrameParams, stride: u32, options: &RenderOptions, extent: f32) -> Vec<AdaptiveGrid> {
     let half = stride / 2;
     let tolerances = if stride == 2 { &options.tolerances } else { &options.coarse_tolerances };
-    let step2 = StepParams { reference_dx: half, ..grid(frame, (half, 0), (stride, stride)) };
-    let step3 = StepParams { reference_dy: half, ..grid(frame, (0, half), (half, stride)) };
-    [
-        AdaptiveGrid {
-            check: Kernel::Step2a,
-            pack: STEP2B,
-            trace: Kernel::Step2c,
-            params: with_checks(step2, tolerances, options, extent),
-        },
-        AdaptiveGrid {
-            check: Kernel::Step3a,
-            pack: STEP3B,
-            trace: Kernel::Step3c,
-            params: with_checks(step3, tolerances, options, extent),
-        },
-    ]
+    let checks = |step| with_checks(step, tolerances, options, extent);
+    let step2 = checks(StepParams { reference_dx: half, ..grid(frame, (half, 0), (stride, stride)) });
+    let step3 = |left, width| checks(StepParams { reference_dy: half, ..grid(frame, (left, half), (width, stride)) });
+    let a1 = AdaptiveGrid { check: Kernel::Step2a, pack: STEP2B, trace: Kernel::Step2c, params: step2 };
+    let a2 = |params| AdaptiveGrid { check: Kernel::Step3a, pack: STEP3B, trace: Kernel::Step3c, params };
+    if options.other_pairs {
+        let odd = step3(half, stride);
+        let odd = StepParams { flags: odd.flags | STEP_OTHER_PAIRS, ..odd };
+        vec![a1, a2(step3(0, stride)), a2(odd)]
+    } else {
+        vec![a1, a2(step3(0, half))]
+    }
 }
 
 fn with_checks(step: StepParams, tolerances: &Tolerances, options: &RenderOptions, extent: f32) -> StepParams {
     let perspective = if options.interpolation == Interpolation::Perspective { STEP_PERSPECTIVE } else { 0 };
     let gcol_linear = if options.gcol_linear { STEP_GCOL_LINEAR } else { 0 };
+    let unwrap = if options.unwrap_textures { STEP_UNWRAP } else { 0 };
     StepParams {
         t_pos: tolerances.t_pos * extent,
         t_norm: tolerances.t_norm,
@@ -135,7 +133,7 @@ fn with_checks(step: StepParams, tolerances: &Tolerances, options: &RenderOption
         // The strictest tolerances trace every pixel, whatever it looks like.
         lenient_tests: if tolerances.t_pos > 0.0 { options.lenient_tests } else { 0 },
         t_visible: options.t_visible,
-        flags: STEP_STORE | perspective | gcol_linear,
+        flags: STEP_STORE | perspective | gcol_linear | unwrap,
         ..step
     }
 }
