@@ -1,20 +1,38 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // step4 (paper, post-correction): from every traced adaptive pixel, hit information spreads to its four neighbours;
 // an interpolated neighbour with another object (or, with STEP_COMPARE_SHADOW, other shadow bits; with
-// STEP_COMPARE_SHADING, another normal or reflected colour; where they look different) gets a ray, and if that finds something other than
-// interpolation had, the pixel spreads in turn.
+// STEP_COMPARE_SHADING, another normal or reflected colour; where they look different) gets a ray, and if that finds
+// something other than interpolation had, the pixel spreads in turn. With STEP_THIN_ONLY the edges of thick things do not
+// spread: only the sources of the first round are asked, before any pixel is corrected, so that order decides nothing.
 //
 // `converged`: rounds of mark, count, scan, scatter, trace until no pixel is listed. A round looks only at the
 // neighbours of the pixels that the last round traced, so the fired set is the least fixed point of the rule, the same
 // for any order. `sweeps`: the paper's one round, each row there and back, then each column (step4_sweep).
 // Inputs: frame, scene, attribute planes, list entries [source_offset ..). Outputs: attribute planes, class CORRECTED
 // (changed) or CONFIRMED, colour, list entries from list_offset on.
-// Invariant: only INTERPOLATED pixels are written, each once. Cost: 4 class and object words per source, one ray tree
-// per listed pixel.
+// Invariant: only INTERPOLATED pixels are written, each once. Cost: 4 class words and up to 7 attribute vectors per
+// source, one ray tree per listed pixel.
 // Twin: src/twin/step4.rs.
 #include "types.h"
 #include "common/pack.clh"
 #include "common/trace.clh"
+
+// Does what pixel (x, y) hit fill the three pixels on its far side from (nx, ny) and one beside it, too? Then it is thick
+// and, if its edge is straight, ends here: the references of (nx, ny) would have met it otherwise. With neither pixel
+// beside it, (x, y) may be where something thin begins.
+static inline bool is_thick(__constant FrameParams *frame, const StepParams *step, __global const uint *attributes,
+                            __global const uint *color, const Attributes *a, uint x, uint y, uint nx, uint ny) {
+  uint filled = 0u;
+  for (uint k = 0u; k < 6u; ++k) {
+    // The far side's three, and beside (x, y) both; (x, y) itself is no question.
+    const uint back = k < 3u ? 1u : 0u, along = k % 3u - 1u;
+    const uint bx = x - back * (nx - x) + along * (ny - y), by = y - back * (ny - y) + along * (nx - x);
+    if (bx >= frame->width || by >= frame->height) continue;
+    const Attributes b = load_attributes(attributes, frame->plane_pitch, plane_index(frame, bx, by));
+    if (!hits_differ(step, a, &b, color[color_index(frame, x, y)], color[color_index(frame, bx, by)])) filled |= 1u << k;
+  }
+  return (filled & 7u) == 7u && (filled & 40u);
+}
 
 // Does pixel (x, y) spread to its neighbour (nx, ny): is it a source, is that interpolated, and is it something else?
 static inline bool spreads(__constant FrameParams *frame, const StepParams *step, __global const uint *attributes,
@@ -24,13 +42,19 @@ static inline bool spreads(__constant FrameParams *frame, const StepParams *step
   if (from_class != CLASS_TRACED && from_class != CLASS_CORRECTED) return false;
   if ((attributes[PLANE_CLASS * pitch + to] & CLASS_MASK) != CLASS_INTERPOLATED) return false;
   const Attributes a = load_attributes(attributes, pitch, at), b = load_attributes(attributes, pitch, to);
-  return hits_differ(step, &a, &b, color[color_index(frame, x, y)], color[color_index(frame, nx, ny)]);
+  if (!hits_differ(step, &a, &b, color[color_index(frame, x, y)], color[color_index(frame, nx, ny)])) return false;
+  // What interpolation had missed is thin, and reflected patterns have no straight edges: both spread anyway.
+  return !(step->flags & STEP_THIN_ONLY) || from_class == CLASS_CORRECTED || !surfaces_differ(step, &a, &b) ||
+         !is_thick(frame, step, attributes, color, &a, x, y, nx, ny);
 }
 
-// Item i looks from source i / 4 in direction i % 4: left, right, up, down. NO_PIXEL beyond the window.
+// Item i looks from source i / 4 in direction i % 4: left, right, up, down. NO_PIXEL beyond the window, and from
+// sources that lie neither in its interior nor in the row above or below.
 static inline uint neighbour(__constant FrameParams *frame, const StepParams *step, __global const uint *list, uint i) {
   const uint source = list[step->source_offset + (i >> 2)];
   const uint x = source & 0xffffu, y = source >> 16;
+  // Farther out in the context, what a source is compared with may be missing.
+  if (y + 1u < frame->interior_begin || y > frame->interior_end) return NO_PIXEL;
   switch (i & 3u) {
   case 0u: return x > 0u ? source - 1u : NO_PIXEL;
   case 1u: return x + 1u < frame->width ? source + 1u : NO_PIXEL;
@@ -92,8 +116,10 @@ __kernel void step4_trace(SCENE_PARAMS, const StepParams step, __global const ui
   const uint item = get_global_id(0);
   if (item >= step.item_count) return;
   const uint pixel = list[step.list_offset + item], y = pixel >> 16;
+  const uint at = PLANE_CLASS * frame->plane_pitch + pixel_plane_index(frame, pixel);
+  // A pixel that two windows fire at may be listed twice.
+  if ((out_attributes[at] & CLASS_MASK) != CLASS_INTERPOLATED) return;
   if ((step.flags & STEP_SETTLE) || y < frame->interior_begin || y >= frame->interior_end) {
-    const uint at = PLANE_CLASS * frame->plane_pitch + pixel_plane_index(frame, pixel);
     out_attributes[at] = (out_attributes[at] & ~CLASS_MASK) | CLASS_CONFIRMED;
     return;
   }

@@ -106,6 +106,12 @@ shared_constants! {
     STEP_COMPARE_SHADING = 16;
     /// Step flag: step4's listed pixels had their rays already and are only marked.
     STEP_SETTLE = 32;
+    /// Step flag: in step4 traced pixels at the edge of something thick do not spread.
+    STEP_THIN_ONLY = 64;
+    /// Step flag: a pixel whose own references fail may be interpolated between other neighbours.
+    STEP_OTHER_PAIRS = 128;
+    /// Step flag: texture coordinates are compared and interpolated the shorter way around.
+    STEP_UNWRAP = 256;
 
     /// Surface kind: diffuse and highlight only.
     SURFACE_OPAQUE = 0;

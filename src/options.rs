@@ -97,7 +97,8 @@ pub struct Tolerances {
     pub t_norm: f32,
     /// G4: sine of the slope below which a surface counts as flat.
     pub t_conv: f32,
-    /// TX: how near to the border of its repetition a coordinate counts as "at the border".
+    /// TX: how far apart texture coordinates may be the shorter way around; without `unwrap_textures`, how near to the
+    /// border of its repetition a coordinate counts as "at the border".
     pub t_tex: f32,
     /// GC: largest distance of the reflected colours.
     pub t_gcol: f32,
@@ -106,9 +107,9 @@ pub struct Tolerances {
 impl Tolerances {
     /// The tolerances of every published result (paper; `t_conv` is ours).
     pub const PAPER: Tolerances = Tolerances { t_pos: 0.03, t_norm: 0.9, t_conv: 0.05, t_tex: 0.3, t_gcol: 0.15 };
-    /// Ours for references two pixels apart: looser normals and convexity, since correction by normals mends what they
-    /// miss, and a tighter GC, whose misses show most (docs/method.md).
-    pub const FINE: Tolerances = Tolerances { t_pos: 0.03, t_norm: 0.87, t_conv: 0.1, t_tex: 0.3, t_gcol: 0.09 };
+    /// Ours for references two pixels apart: looser distance and convexity, where perspective interpolation and
+    /// correction by normals mend what they miss, and a tighter GC, whose misses show most (docs/method.md).
+    pub const FINE: Tolerances = Tolerances { t_pos: 0.06, t_norm: 0.9, t_conv: 0.2, t_tex: 0.3, t_gcol: 0.05 };
     /// Ours for references four pixels apart: an error there spreads over more pixels.
     pub const COARSE: Tolerances = Tolerances { t_pos: 0.03, t_norm: 0.95, t_conv: 0.05, t_tex: 0.3, t_gcol: 0.06 };
 }
@@ -142,10 +143,18 @@ pub struct RenderOptions {
     pub gcol_linear: bool,
     /// Bits of the tests that are switched on: `FAIL_*`.
     pub tests: u32,
+    /// A pixel of step III with eight known neighbours whose upper and lower one fail may lie between two others; beyond
+    /// the paper.
+    pub other_pairs: bool,
+    /// TX compares texture coordinates, and interpolation joins them, the shorter way around; beyond the paper.
+    pub unwrap_textures: bool,
     /// Bits of the tests that count only where the two references look different (`t_visible`); beyond the paper.
     pub lenient_tests: u32,
     /// From which difference of a colour channel of 0 to 255 on two references look different; 0 makes no test lenient.
     pub t_visible: u32,
+    /// Post-correction by [`CorrectionMethod::Converged`]: traced pixels at the edge of something thick do not spread;
+    /// beyond the paper.
+    pub correction_thin_only: bool,
     /// Post-correction: from which difference of a colour channel of 0 to 255 on a change within one object counts.
     pub correction_t_visible: u32,
     /// Post-correction: least dot product of normals that are taken to be the same.
@@ -173,11 +182,14 @@ impl Default for RenderOptions {
             coarse_tolerances: Tolerances::COARSE,
             gcol_linear: false,
             tests: FAIL_ALL,
+            other_pairs: true,
+            unwrap_textures: true,
             lenient_tests: FAIL_SH,
-            t_visible: 8,
-            correction_t_visible: 8,
+            t_visible: 12,
+            correction_thin_only: true,
+            correction_t_visible: 6,
             correction_t_norm: 0.9,
-            correction_t_gcol: 0.1,
+            correction_t_gcol: 0.05,
             band_rows: None,
         }
     }
@@ -194,8 +206,11 @@ impl RenderOptions {
             tolerances: Tolerances::PAPER,
             coarse_tolerances: Tolerances::PAPER,
             gcol_linear: true,
+            other_pairs: false,
+            unwrap_textures: false,
             lenient_tests: 0,
             t_visible: 0,
+            correction_thin_only: false,
             correction_t_visible: 0,
             ..RenderOptions::default()
         }

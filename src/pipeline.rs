@@ -189,31 +189,29 @@ fn grid(frame: &FrameParams, origin: (u32, u32), step: (u32, u32)) -> StepParams
     }
 }
 
-/// The two classes of adaptive pixels at one stride: A1 between two references in a row, A2 between two in a column.
-fn adaptive_grids(frame: &FrameParams, stride: u32, options: &RenderOptions, extent: f32) -> [AdaptiveGrid; 2] {
+/// The classes of adaptive pixels at one stride: A1 between two references in a row, A2 between two in a column; the odd
+/// columns of A2 by themselves where they may also use what the even ones found.
+fn adaptive_grids(frame: &FrameParams, stride: u32, options: &RenderOptions, extent: f32) -> Vec<AdaptiveGrid> {
     let half = stride / 2;
     let tolerances = if stride == 2 { &options.tolerances } else { &options.coarse_tolerances };
-    let step2 = StepParams { reference_dx: half, ..grid(frame, (half, 0), (stride, stride)) };
-    let step3 = StepParams { reference_dy: half, ..grid(frame, (0, half), (half, stride)) };
-    [
-        AdaptiveGrid {
-            check: Kernel::Step2a,
-            pack: STEP2B,
-            trace: Kernel::Step2c,
-            params: with_checks(step2, tolerances, options, extent),
-        },
-        AdaptiveGrid {
-            check: Kernel::Step3a,
-            pack: STEP3B,
-            trace: Kernel::Step3c,
-            params: with_checks(step3, tolerances, options, extent),
-        },
-    ]
+    let checks = |step| with_checks(step, tolerances, options, extent);
+    let step2 = checks(StepParams { reference_dx: half, ..grid(frame, (half, 0), (stride, stride)) });
+    let step3 = |left, width| checks(StepParams { reference_dy: half, ..grid(frame, (left, half), (width, stride)) });
+    let a1 = AdaptiveGrid { check: Kernel::Step2a, pack: STEP2B, trace: Kernel::Step2c, params: step2 };
+    let a2 = |params| AdaptiveGrid { check: Kernel::Step3a, pack: STEP3B, trace: Kernel::Step3c, params };
+    if options.other_pairs {
+        let odd = step3(half, stride);
+        let odd = StepParams { flags: odd.flags | STEP_OTHER_PAIRS, ..odd };
+        vec![a1, a2(step3(0, stride)), a2(odd)]
+    } else {
+        vec![a1, a2(step3(0, half))]
+    }
 }
 
 fn with_checks(step: StepParams, tolerances: &Tolerances, options: &RenderOptions, extent: f32) -> StepParams {
     let perspective = if options.interpolation == Interpolation::Perspective { STEP_PERSPECTIVE } else { 0 };
     let gcol_linear = if options.gcol_linear { STEP_GCOL_LINEAR } else { 0 };
+    let unwrap = if options.unwrap_textures { STEP_UNWRAP } else { 0 };
     StepParams {
         t_pos: tolerances.t_pos * extent,
         t_norm: tolerances.t_norm,
@@ -224,7 +222,7 @@ fn with_checks(step: StepParams, tolerances: &Tolerances, options: &RenderOption
         // The strictest tolerances trace every pixel, whatever it looks like.
         lenient_tests: if tolerances.t_pos > 0.0 { options.lenient_tests } else { 0 },
         t_visible: options.t_visible,
-        flags: STEP_STORE | perspective | gcol_linear,
+        flags: STEP_STORE | perspective | gcol_linear | unwrap,
         ..step
     }
 }
@@ -278,8 +276,11 @@ fn correct(
         Correction::All => STEP_STORE | STEP_COMPARE_SHADOW | STEP_COMPARE_SHADING,
     };
     let gcol_linear = if options.gcol_linear { STEP_GCOL_LINEAR } else { 0 };
+    // Lines are swept side by side: what lies beside a line may be changing.
+    let converged = options.correction_method == CorrectionMethod::Converged;
+    let thin_only = if options.correction_thin_only && converged { STEP_THIN_ONLY } else { 0 };
     let step = StepParams {
-        flags: flags | gcol_linear,
+        flags: flags | gcol_linear | thin_only,
         t_visible: options.correction_t_visible,
         t_norm: options.correction_t_norm,
         t_gcol: options.correction_t_gcol,
@@ -295,20 +296,41 @@ fn correct(
 fn correct_converged(backend: &mut dyn Backend, step: &StepParams, given: &GivenList, listed: u32) -> Result<u32> {
     let settle = StepParams { item_count: given.settled, flags: step.flags | STEP_SETTLE, ..*step };
     run_list(backend, Kernel::Step4Trace, &settle)?;
-    let fire = StepParams { list_offset: given.settled, item_count: given.fired, ..*step };
-    run_list(backend, Kernel::Step4Trace, &fire)?;
-    let mut source_offset = given.settled;
-    let mut sources = if given.first_time { listed - given.settled } else { given.fired };
     let mut list_offset = listed;
-    while sources > 0 {
-        let round = StepParams { source_offset, list_offset, item_count: 4 * sources, ..*step };
-        backend.run(Kernel::Step4Mark, &round)?;
-        let count = pack(backend, &STEP4, &round)?;
-        run_list(backend, Kernel::Step4Trace, &StepParams { item_count: count, ..round })?;
-        (source_offset, sources) = (list_offset, count);
-        list_offset += count;
+    // Traced pixels are asked first: whether they are at the edge of something thick is seen before any correction.
+    if given.first_time {
+        list_offset += fire_from(backend, step, given.len(), listed - given.len(), list_offset)?;
+    }
+    if given.fired > 0 {
+        let fire = StepParams { list_offset: given.settled, item_count: given.fired, ..*step };
+        backend.run(Kernel::Step4Trace, &fire)?;
+        list_offset += fire_from(backend, step, given.settled, given.fired, list_offset)?;
+    }
+    let mut source_offset = listed;
+    while list_offset > source_offset {
+        let sources = list_offset - source_offset;
+        let count = fire_from(backend, step, source_offset, sources, list_offset)?;
+        (source_offset, list_offset) = (list_offset, list_offset + count);
     }
     Ok(list_offset - listed)
+}
+
+/// One round: the listed `sources` fire; what they hit is listed and traced. Returns how many pixels that is.
+fn fire_from(
+    backend: &mut dyn Backend,
+    step: &StepParams,
+    source_offset: u32,
+    sources: u32,
+    list_offset: u32,
+) -> Result<u32> {
+    if sources == 0 {
+        return Ok(0);
+    }
+    let round = StepParams { source_offset, list_offset, item_count: 4 * sources, ..*step };
+    backend.run(Kernel::Step4Mark, &round)?;
+    let count = pack(backend, &STEP4, &round)?;
+    run_list(backend, Kernel::Step4Trace, &StepParams { item_count: count, ..round })?;
+    Ok(count)
 }
 
 /// Each row there and back, then each column.

@@ -246,6 +246,8 @@ pub fn options(mode: Mode, width: u32, height: u32, block: u32) -> RenderOptions
         correction: Correction::Off,
         tolerances: Tolerances::PAPER,
         coarse_tolerances: Tolerances::PAPER,
+        other_pairs: false,
+        unwrap_textures: false,
         lenient_tests: 0,
         t_visible: 0,
         correction_t_visible: 0,

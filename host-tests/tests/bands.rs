@@ -61,8 +61,8 @@ fn five_band_heights_draw_one_picture_on_both_back_ends() {
     }
 }
 
-/// A wall with a thin wire before it that leans a little and is seen by one row of base pixels at most: at its foot, on
-/// a block as wide as several pixels. Everything above is found by correction alone, upwards through all bands.
+/// A wall with a thin wire before it that lies between two columns of base pixels; only its lowest part is so wide
+/// that one of them meets it. Everything above is found by correction alone, upwards through all bands.
 fn wire_scene() -> Scene {
     let eye = Eye { at: DVec3::new(0.0, 0.0, 4.0), look_at: DVec3::ZERO, fov_degrees: 40.0 };
     let mut builder = eye.seen_from(SceneBuilder::new("wire"));
@@ -72,8 +72,10 @@ fn wire_scene() -> Scene {
     // The wire: about 0.9 pixels wide at 96 pixels, between two columns of base pixels.
     let pixel = 2.0 * 3.0 * 20f64.to_radians().tan() / 96.0;
     let (left, right) = ((pixel * 1.05) as f32, (pixel * 1.95) as f32);
-    builder.quad([v(left, -1.0, 1.0), v(right, -1.0, 1.0), v(right, 1.0, 1.0), v(left, 1.0, 1.0)]);
-    builder.quad([v(-0.1, -1.0, 1.0), v(0.15, -1.0, 1.0), v(0.15, -0.95, 1.0), v(-0.1, -0.95, 1.0)]);
+    let [below, knee, above] = [-43.0, -33.0, 42.0].map(|rows| (rows * pixel) as f32);
+    let pixel = pixel as f32;
+    builder.quad([v(left, knee, 1.0), v(right, knee, 1.0), v(right, above, 1.0), v(left, above, 1.0)]);
+    builder.quad([v(left, below, 1.0), v(right + pixel, below, 1.0), v(right, knee, 1.0), v(left, knee, 1.0)]);
     builder.build(10.0)
 }
 

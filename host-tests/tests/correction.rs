@@ -58,6 +58,19 @@ impl Planes {
             && self.differ(from, to, shadows)
     }
 
+    /// Do the three pixels on the far side of `from` show what it shows?
+    fn is_thick(&self, from: usize, to: usize, shadows: bool) -> bool {
+        let (width, height) = (self.width as isize, (self.class.len() / self.width) as isize);
+        let at = |pixel: usize| (pixel as isize % width, pixel as isize / width);
+        let ((x, y), (nx, ny)) = (at(from), at(to));
+        (-1..=1).all(|k| {
+            let (bx, by) = (2 * x - nx + k * (ny - y), 2 * y - ny + k * (nx - x));
+            (0..width).contains(&bx)
+                && (0..height).contains(&by)
+                && !self.differ(from, (by * width + bx) as usize, shadows)
+        })
+    }
+
     fn fired(&self) -> Vec<usize> {
         (0..self.class.len()).filter(|&at| self.is(at, &[CLASS_CORRECTED, CLASS_CONFIRMED])).collect()
     }
@@ -72,12 +85,25 @@ impl Planes {
 
 /// The worklist. `order` says which waiting pixel is next; `full` what a ray finds.
 fn least_fixed_point(before: &Planes, full: &Planes, shadows: bool, order: &mut dyn FnMut(usize) -> usize) -> Planes {
+    fixed_point(before, full, shadows, false, order)
+}
+
+/// With `thin_only` what the traced pixels saw before any correction decides which of them are at the edge of something
+/// thick.
+fn fixed_point(
+    before: &Planes,
+    full: &Planes,
+    shadows: bool,
+    thin_only: bool,
+    order: &mut dyn FnMut(usize) -> usize,
+) -> Planes {
     let mut now = before.clone();
     let mut waiting: Vec<usize> = (0..now.class.len()).filter(|&at| now.is(at, &[CLASS_TRACED])).collect();
     while !waiting.is_empty() {
         let from = waiting.swap_remove(order(waiting.len()));
         for to in now.neighbours(from) {
-            if !now.spreads(from, to, shadows) {
+            let spared = thin_only && before.is(from, &[CLASS_TRACED]) && before.is_thick(from, to, shadows);
+            if spared || !now.spreads(from, to, shadows) {
                 continue;
             }
             let old = (now.object[to], now.shadow[to]);
@@ -93,7 +119,9 @@ fn least_fixed_point(before: &Planes, full: &Planes, shadows: bool, order: &mut 
 }
 
 fn adaptive(width: u32, height: u32, block: u32, correction: Correction, method: CorrectionMethod) -> RenderOptions {
-    RenderOptions { correction, correction_method: method, ..options(Mode::Adaptive, width, height, block) }
+    let options = options(Mode::Adaptive, width, height, block);
+    // The paper's rule; thin things only: see below.
+    RenderOptions { correction, correction_method: method, correction_thin_only: false, ..options }
 }
 
 fn full(renderer: &mut Renderer, width: u32, height: u32) -> Planes {
@@ -168,6 +196,66 @@ fn converged_correction_is_the_least_fixed_point_in_any_order() {
     });
     println!("{fired} pixels fired, {confirmed} confirmed, {controls} told apart");
     assert!(fired > 2000 && confirmed > 50 && controls > 10, "{fired} fired, {confirmed} confirmed, {controls}");
+}
+
+#[test]
+fn correction_of_thin_things_is_the_same_in_any_order_and_spares_edges_of_thick_ones() {
+    let mut random = Random::new(9);
+    let (mut fired, mut of) = (0, 0);
+    for_all(|renderer, options, shadows, name| {
+        let thin_only = RenderOptions { correction_thin_only: true, ..options.clone() };
+        let full = full(renderer, options.width, options.height);
+        let before = without_correction(renderer, &options);
+        let found = planes(renderer, &thin_only);
+        let expected = fixed_point(&before, &full, shadows, true, &mut |n| n - 1);
+        assert!(found == expected, "{name}: {:?} instead of {:?}", found.fired(), expected.fired());
+        let at_random = fixed_point(&before, &full, shadows, true, &mut |n| random.below(n));
+        assert!(at_random == expected, "{name}: at random");
+        let all = planes(renderer, &options);
+        assert!(found.fired().iter().all(|at| all.fired().contains(at)), "{name}: fired more than without the rule");
+        fired += found.fired().len();
+        of += all.fired().len();
+    });
+    println!("{fired} of {of} pixels fired");
+    assert!(fired > 500 && fired * 10 < of * 9, "{fired} of {of} pixels fired");
+}
+
+/// A bar over the pixels `lo` to `hi` of 64x64, before a wall. The eye holds the light, so that nothing is in shadow.
+fn bar(lo: (f32, f32), hi: (f32, f32)) -> Scene {
+    let half_height_degrees = 0.25_f32.atan().to_degrees();
+    let mut builder = SceneBuilder::new("bar").camera(v(0.0, 0.0, 4.0), v(0.0, 0.0, 0.0), 2.0 * half_height_degrees);
+    builder = builder.light(v(0.0, 0.0, 4.0), 8.0);
+    builder.object(matte(v(0.8, 0.2, 0.2)));
+    builder.wall(glam::Vec2::splat(-3.0), glam::Vec2::splat(3.0), 0.0);
+    builder.object(matte(v(0.1, 0.1, 0.9)));
+    let place = |x: f32, y: f32| glam::vec2(x / 32.0 - 1.0, 1.0 - y / 32.0);
+    builder.wall(place(lo.0, hi.1), place(hi.0, lo.1), 0.001);
+    builder.build(40.0)
+}
+
+/// How many pixels of each row, and of each column, correction fired at a bar.
+fn fired_at(lo: (f32, f32), hi: (f32, f32), correction_thin_only: bool) -> [Vec<(usize, usize)>; 2] {
+    let mut renderer = twin_renderer(bar(lo, hi));
+    let options = adaptive(64, 64, 2, Correction::Object, CorrectionMethod::Converged);
+    let found = planes(&mut renderer, &RenderOptions { correction_thin_only, ..options });
+    [|at: usize| at / 64, |at: usize| at % 64].map(|line| {
+        let count = |i: usize| found.fired().iter().filter(|&&at| line(at) == i).count();
+        (0..64).map(|i| (i, count(i))).filter(|&(_, fired)| fired > 0).collect()
+    })
+}
+
+#[test]
+fn edges_of_a_thick_bar_ask_for_no_rays_and_a_thin_bar_is_found_along_its_length() {
+    // Rows 9 and 19 are traced, since the rows beside them differ: what they see differs from the interpolated odd
+    // pixels of rows 10 and 20, and fills the row behind it.
+    let thick = ((-9.0, 10.0), (99.0, 20.0));
+    assert_eq!(fired_at(thick.0, thick.1, false)[0], [(10, 31), (20, 31)]);
+    assert_eq!(fired_at(thick.0, thick.1, true)[0], []);
+    // One odd column, between references: only the last row is traced, and has nothing behind it. From there the bar is
+    // followed upwards, and asks on either side.
+    for thin_only in [false, true] {
+        assert_eq!(fired_at((11.0, -9.0), (12.0, 99.0), thin_only)[1], [(10, 31), (11, 63), (12, 31)]);
+    }
 }
 
 #[test]

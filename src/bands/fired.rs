@@ -24,10 +24,12 @@ impl FiredPixels {
         (y * self.words_per_row + x / 64, 1 << (x % 64))
     }
 
-    /// Adds a pixel.
-    pub fn insert(&mut self, pixel: u32) {
+    /// Adds a pixel; says whether it is new.
+    pub fn insert(&mut self, pixel: u32) -> bool {
         let (word, bit) = self.place(pixel);
+        let is_new = self.words[word] & bit == 0;
         self.words[word] |= bit;
+        is_new
     }
 
     /// Is the pixel there?
@@ -63,7 +65,7 @@ mod tests {
         let pixels = [0, 63, 64, 129, 1 << 16, 129 | 2 << 16];
         for pixel in pixels {
             assert!(!fired.contains(pixel));
-            fired.insert(pixel);
+            assert!(fired.insert(pixel) && !fired.insert(pixel));
             assert!(fired.contains(pixel));
         }
         assert!(!fired.contains(1));

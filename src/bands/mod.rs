@@ -111,11 +111,12 @@ impl Chains {
         taken.into_iter().collect()
     }
 
-    /// Sorts the pixels that a window fired at: returns those of its interior, which were traced.
-    fn sort(&mut self, listed: Vec<u32>, interior: &Range<u32>) -> Vec<u32> {
-        let (traced, outside): (Vec<u32>, Vec<u32>) =
+    /// Sorts the pixels that a window fired at, some of them perhaps twice: returns those of its interior, which were
+    /// traced.
+    fn sort(&mut self, listed: impl IntoIterator<Item = u32>, interior: &Range<u32>) -> Vec<u32> {
+        let (mut traced, outside): (Vec<u32>, Vec<u32>) =
             listed.into_iter().partition(|&pixel| interior.contains(&(pixel >> 16)));
-        traced.iter().for_each(|&pixel| self.fired.insert(pixel));
+        traced.retain(|&pixel| self.fired.insert(pixel));
         self.pending.extend(outside.into_iter().filter(|&pixel| !self.fired.contains(pixel)));
         traced
     }
@@ -148,22 +149,20 @@ impl Banded<'_> {
         let given = Given { settled: None, fired: &fired };
         let (all_traced, listed) = self.draw_window(backend, &window, &given)?;
         let traced = all_traced.iter().filter(|&&pixel| rows.contains(&(pixel >> 16))).count() as u64;
-        fired.iter().for_each(|&pixel| chains.fired.insert(pixel));
-        let corrected = chains.sort(listed, &rows).len() + fired.len();
-        self.counts.add(&PixelCounts::new(&window, traced, corrected as u64));
-        self.collected.sums.primary += corrected as u64;
+        let corrected = chains.sort(fired.into_iter().chain(listed), &rows).len() as u64;
+        self.counts.add(&PixelCounts::new(&window, traced, corrected));
+        self.collected.sums.primary += corrected;
         self.sum(backend, &window, true)?;
         self.collected.take(backend, &window, Taken::Interior)
     }
 
     fn repair(&mut self, backend: &mut dyn Backend, rows: Range<u32>, chains: &mut Chains) -> Result<()> {
-        let mut fired = chains.take_pending(&rows);
+        let fired = chains.take_pending(&rows);
         let window = self.plan.window(rows.clone());
         let settled = chains.fired.in_rows(window.window_begin..window.window_end);
         let given = Given { settled: Some(&settled), fired: &fired };
         let (_, listed) = self.draw_window(backend, &window, &given)?;
-        fired.iter().for_each(|&pixel| chains.fired.insert(pixel));
-        fired.extend(chains.sort(listed, &rows));
+        let fired = chains.sort(fired.into_iter().chain(listed), &rows);
         let corrected = fired.len() as u64;
         self.counts.corrected += corrected;
         self.counts.interpolated -= corrected;

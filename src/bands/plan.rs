@@ -76,7 +76,7 @@ fn widest(frame: &FrameParams, rows: u32) -> FrameParams {
 }
 
 fn tall(frame: &FrameParams, rows: u32) -> FrameParams {
-    let context = if frame.block > 1 { frame.block + 1 } else { 0 };
+    let context = if frame.block > 1 { 2 * frame.block + 1 } else { 0 };
     with_window(frame, 0..rows + context, 0..rows)
 }
 
@@ -84,10 +84,10 @@ fn window(frame: &FrameParams, interior: Range<u32>) -> FrameParams {
     if frame.block == 1 {
         return with_window(frame, interior.clone(), interior);
     }
-    // Above, a row of blocks, from which the last row above the interior is interpolated; below, the next row, which
-    // holds base pixels.
+    // Post-correction looks at the row above and at two below; those are interpolated from a row of blocks above, and
+    // from one below with the base pixels that follow.
     let begin = interior.start.saturating_sub(frame.block);
-    let end = (interior.end + 1).min(frame.height);
+    let end = (interior.end + frame.block + 1).min(frame.height);
     with_window(frame, begin..end, interior)
 }
 

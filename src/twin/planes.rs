@@ -166,6 +166,13 @@ pub fn hits_differ(step: &StepParams, a: &Attributes, b: &Attributes, color_a: u
         && (!(dot(a.normal, b.normal) >= step.t_norm) || !(gcol_distance(a.gcol, b.gcol, step.flags) <= step.t_gcol))
 }
 
+/// Of two hits that differ: do they differ in more than reflected colours?
+pub fn surfaces_differ(step: &StepParams, a: &Attributes, b: &Attributes) -> bool {
+    a.object != b.object
+        || (step.flags & STEP_COMPARE_SHADOW != 0 && a.shadow_bits != b.shadow_bits)
+        || (step.flags & STEP_COMPARE_SHADING != 0 && !(dot(a.normal, b.normal) >= step.t_norm))
+}
+
 /// Writes the work counters of the pixel at plane index `at`, if counters are kept.
 pub fn store_work(counters: &Words, pitch: u32, at: u32, work: &Work) {
     if counters.is_empty() {

@@ -8,10 +8,32 @@ use super::planes::{
 use super::scene_args::{SceneArgs, Work, xyz};
 use super::shade::{ShadePoint, shade_local, srgb_word};
 use crate::layout::*;
-use crate::math::{dot, normalize};
+use crate::math::{dot, fraction, min2, normalize};
 
 fn wraps(a: f32, b: f32, t_tex: f32) -> bool {
     (a < t_tex && b > 1.0 - t_tex) || (b < t_tex && a > 1.0 - t_tex)
+}
+
+fn around(a: f32, b: f32) -> f32 {
+    let e = (a - b).abs();
+    min2(e, 1.0 - e)
+}
+
+fn unwrap(a: f32, b: f32) -> f32 {
+    if b - a > 0.5 {
+        b - 1.0
+    } else if a - b > 0.5 {
+        b + 1.0
+    } else {
+        b
+    }
+}
+
+fn textures_part(step: &StepParams, a: &Attributes, b: &Attributes) -> bool {
+    if step.flags & STEP_UNWRAP != 0 {
+        return !(around(a.s, b.s) <= step.t_tex) || !(around(a.t, b.t) <= step.t_tex);
+    }
+    wraps(a.s, b.s, step.t_tex) || wraps(a.t, b.t, step.t_tex)
 }
 
 /// The fail mask of a pair of references: bit `FAIL_*` set where that test fails and is switched on.
@@ -40,7 +62,7 @@ pub fn similarity_checks(scene: &SceneArgs, step: &StepParams, a: &Attributes, b
         mask |= FAIL_G4;
     }
     let material = &scene.materials[scene.object_materials[a.object as usize] as usize];
-    if material.diffuse_texture != NO_TEXTURE && (wraps(a.s, b.s, step.t_tex) || wraps(a.t, b.t, step.t_tex)) {
+    if material.diffuse_texture != NO_TEXTURE && textures_part(step, a, b) {
         mask |= FAIL_TX;
     }
     if a.shadow_bits != b.shadow_bits {
@@ -64,15 +86,48 @@ pub fn interpolate(frame: &FrameParams, step: &StepParams, a: &Attributes, b: &A
         wa = zb / (za + zb);
     }
     let wb = 1.0 - wa;
+    let texture = |a: f32, b: f32| {
+        if step.flags & STEP_UNWRAP != 0 { fraction(a * wa + unwrap(a, b) * wb) } else { a * wa + b * wb }
+    };
     Attributes {
         position: a.position * wa + b.position * wb,
         normal: normalize(a.normal * wa + b.normal * wb),
-        s: a.s * wa + b.s * wb,
-        t: a.t * wa + b.t * wb,
+        s: texture(a.s, b.s),
+        t: texture(a.t, b.t),
         gcol: a.gcol * wa + b.gcol * wb,
         object: a.object,
         shadow_bits: a.shadow_bits,
     }
+}
+
+/// A neighbour: its attributes and its shown colour.
+type Neighbour = (Attributes, u32);
+
+/// The fail mask of a pair, but 0 where only lenient tests fail and the two look alike.
+fn counted_failures(scene: &SceneArgs, step: &StepParams, a: &Neighbour, b: &Neighbour) -> u32 {
+    let mask = similarity_checks(scene, step, &a.0, &b.0);
+    if mask & !step.lenient_tests != 0 || look_different(a.1, b.1, step.t_visible) { mask } else { 0 }
+}
+
+/// Another opposite pair around `(x, y)` that is alike, and alike with `a` or `b`, the upper and lower neighbours.
+fn find_other_pair(
+    scene: &SceneArgs,
+    step: &StepParams,
+    (x, y): (u32, u32),
+    (a, b): (&Neighbour, &Neighbour),
+    neighbour: &dyn Fn(u32, u32) -> Neighbour,
+) -> Option<(Attributes, Attributes)> {
+    let d = step.reference_dy;
+    if x + d >= scene.frame.width {
+        return None;
+    }
+    let alike = |a: &Neighbour, b: &Neighbour| counted_failures(scene, step, a, b) == 0;
+    let pairs = [(y, y), (y - d, y + d), (y + d, y - d)].into_iter().map(|(left, right)| {
+        let (p, q) = (neighbour(x - d, left), neighbour(x + d, right));
+        let found = alike(&p, &q) && (alike(a, &p) && alike(a, &q) || alike(b, &p) && alike(b, &q));
+        found.then_some((p.0, q.0))
+    });
+    pairs.flatten().next()
 }
 
 /// Checks pixel `(x, y)` against its two references; interpolates and shades it or marks it pending.
@@ -85,16 +140,23 @@ pub fn check_pixel(scene: &SceneArgs, step: &StepParams, x: u32, y: u32, out: &F
         planes.set(PLANE_CLASS * pitch + at, CLASS_PENDING);
         return;
     }
-    let a = load_attributes(planes, pitch, plane_index(frame, x - step.reference_dx, y - step.reference_dy));
-    let b = load_attributes(planes, pitch, plane_index(frame, x + step.reference_dx, y + step.reference_dy));
-    let mask = similarity_checks(scene, step, &a, &b);
-    let color = |x: u32, y: u32| out.color.get(color_index(frame, x, y));
-    let color_a = color(x - step.reference_dx, y - step.reference_dy);
-    let color_b = color(x + step.reference_dx, y + step.reference_dy);
-    if mask != 0 && (mask & !step.lenient_tests != 0 || look_different(color_a, color_b, step.t_visible)) {
+    let neighbour = |x: u32, y: u32| {
+        (load_attributes(planes, pitch, plane_index(frame, x, y)), out.color.get(color_index(frame, x, y)))
+    };
+    let a = neighbour(x - step.reference_dx, y - step.reference_dy);
+    let b = neighbour(x + step.reference_dx, y + step.reference_dy);
+    let mask = counted_failures(scene, step, &a, &b);
+    let pair = if mask == 0 {
+        Some((a.0, b.0))
+    } else if step.flags & STEP_OTHER_PAIRS != 0 {
+        find_other_pair(scene, step, (x, y), (&a, &b), &neighbour)
+    } else {
+        None
+    };
+    let Some((a, b)) = pair else {
         planes.set(PLANE_CLASS * pitch + at, CLASS_PENDING | mask);
         return;
-    }
+    };
     let m = interpolate(frame, step, &a, &b);
     store_attributes(planes, pitch, at, &m);
     planes.set(PLANE_CLASS * pitch + at, CLASS_INTERPOLATED);

@@ -1,10 +1,34 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Twin of `kernels/step4.cl`: post-correction.
 
-use super::planes::{color_index, hits_differ, load_attributes, plane_index};
+use super::planes::{Attributes, color_index, hits_differ, load_attributes, plane_index, surfaces_differ};
 use super::trace::trace_pixel;
 use super::{FrameBuffers, SceneArgs, pack};
 use crate::layout::*;
+
+/// Does what pixel `(x, y)` hit fill the three pixels on its far side from `(nx, ny)` and one beside it, too?
+fn is_thick(
+    frame: &FrameParams,
+    step: &StepParams,
+    buffers: &FrameBuffers,
+    a: &Attributes,
+    (x, y): (u32, u32),
+    (nx, ny): (u32, u32),
+) -> bool {
+    let color = |x: u32, y: u32| buffers.color.get(color_index(frame, x, y));
+    // Pixels left of or above the picture wrap around to beyond it, as in the kernel.
+    let (dx, dy) = (nx.wrapping_sub(x), ny.wrapping_sub(y));
+    let fills = |back: u32, along: u32| {
+        let bx = x.wrapping_sub(back.wrapping_mul(dx)).wrapping_add(along.wrapping_mul(dy));
+        let by = y.wrapping_sub(back.wrapping_mul(dy)).wrapping_add(along.wrapping_mul(dx));
+        if bx >= frame.width || by >= frame.height {
+            return false;
+        }
+        let b = load_attributes(&buffers.attributes, frame.plane_pitch, plane_index(frame, bx, by));
+        !hits_differ(step, a, &b, color(x, y), color(bx, by))
+    };
+    [u32::MAX, 0, 1].into_iter().all(|along| fills(1, along)) && [u32::MAX, 1].into_iter().any(|along| fills(0, along))
+}
 
 fn spreads(
     frame: &FrameParams,
@@ -25,12 +49,21 @@ fn spreads(
     }
     let (a, b) = (load_attributes(planes, pitch, at), load_attributes(planes, pitch, to));
     let color = |x: u32, y: u32| buffers.color.get(color_index(frame, x, y));
-    hits_differ(step, &a, &b, color(x, y), color(nx, ny))
+    if !hits_differ(step, &a, &b, color(x, y), color(nx, ny)) {
+        return false;
+    }
+    step.flags & STEP_THIN_ONLY == 0
+        || from_class == CLASS_CORRECTED
+        || !surfaces_differ(step, &a, &b)
+        || !is_thick(frame, step, buffers, &a, (x, y), (nx, ny))
 }
 
 fn neighbour(frame: &FrameParams, step: &StepParams, buffers: &FrameBuffers, i: u32) -> u32 {
     let source = buffers.list.get(step.source_offset + (i >> 2));
     let (x, y) = (source & 0xffff, source >> 16);
+    if y + 1 < frame.interior_begin || y > frame.interior_end {
+        return NO_PIXEL;
+    }
     let (exists, pixel) = match i & 3 {
         0 => (x > 0, source.wrapping_sub(1)),
         1 => (x + 1 < frame.width, source.wrapping_add(1)),
@@ -98,8 +131,11 @@ pub fn step4_trace(scene: &SceneArgs, step: &StepParams, item: u32, buffers: &Fr
     let pixel = buffers.list.get(step.list_offset + item);
     let (x, y) = (pixel & 0xffff, pixel >> 16);
     let frame = scene.frame;
+    let at = PLANE_CLASS * frame.plane_pitch + pixel_plane_index(frame, pixel);
+    if buffers.attributes.get(at) & CLASS_MASK != CLASS_INTERPOLATED {
+        return;
+    }
     if step.flags & STEP_SETTLE != 0 || y < frame.interior_begin || y >= frame.interior_end {
-        let at = PLANE_CLASS * frame.plane_pitch + pixel_plane_index(frame, pixel);
         buffers.attributes.set(at, buffers.attributes.get(at) & !CLASS_MASK | CLASS_CONFIRMED);
         return;
     }
