@@ -32,13 +32,15 @@ enum Shot {
     Large,
     /// [`Shot::Zoo`] with the strictest tolerances.
     Strictest,
+    /// [`Shot::Room`] by the paper's rules.
+    Paper,
 }
 
 impl Shot {
     fn scene(self) -> &'static str {
         match self {
             Shot::Zoo | Shot::Strictest => "zoo",
-            Shot::Room => "mirror-room",
+            Shot::Room | Shot::Paper => "mirror-room",
             Shot::Rods | Shot::RodsSwept | Shot::Large => "rods",
         }
     }
@@ -52,6 +54,7 @@ impl Shot {
             // Large enough that smooth glass, slopes and faint shadows are interpolated too.
             Shot::Zoo => (options.width, options.height, options.depth) = (180, 136, 3),
             Shot::Room => {}
+            Shot::Paper => options = RenderOptions { width: 50, height: 38, ..RenderOptions::paper() },
         }
         if self == Shot::RodsSwept {
             options.correction_method = CorrectionMethod::Sweeps;
@@ -192,13 +195,20 @@ const SIMILARITY: &[Mutant] = &[
     ("common/similarity.clh", ">= step->t_norm", ">= 0.5f * step->t_norm", Shot::Zoo, Kernel::Step2a),
     ("common/similarity.clh", "step->t_conv * distance", "0.0f * distance", Shot::Zoo, Kernel::Step2a),
     ("common/similarity.clh", "!= NO_TEXTURE", "== NO_TEXTURE", Shot::Room, Kernel::Step3a),
-    ("common/similarity.clh", "a < t_tex && b > 1.0f - t_tex", "a < t_tex && b < 1.0f - t_tex", Shot::Room, Kernel::Step2a),
+    ("common/similarity.clh", "a < t_tex && b > 1.0f - t_tex", "a < t_tex && b < 1.0f - t_tex", Shot::Paper, Kernel::Step2a),
     ("common/similarity.clh", "a->shadow_bits != b->shadow_bits", "(a->shadow_bits ^ b->shadow_bits) > 1u", Shot::Zoo, Kernel::Step2a),
     ("common/similarity.clh", "<= step->t_gcol", "<= 8.0f * step->t_gcol", Shot::Zoo, Kernel::Step3a),
     ("common/attributes.clh", "!(flags & STEP_GCOL_LINEAR)", "(flags & STEP_GCOL_LINEAR)", Shot::Zoo, Kernel::Step2a),
     ("common/similarity.clh", "(mask & ~step->lenient_tests)", "mask", Shot::Zoo, Kernel::Step3a),
     ("common/attributes.clh", "(p > q ? p - q : q - p) >= t_visible", "(p > q ? p - q : 0u) >= t_visible", Shot::Zoo, Kernel::Step3a),
     ("common/attributes.clh", "(step->flags & STEP_COMPARE_SHADING)", "(step->flags & STEP_GCOL_LINEAR)", Shot::Zoo, Kernel::Step4Mark),
+    ("common/similarity.clh", "return min2(e, 1.0f - e)", "return e", Shot::Room, Kernel::Step2a),
+    ("common/similarity.clh", "b - a > 0.5f ? b - 1.0f", "b - a > 0.5f ? b", Shot::Room, Kernel::Step2a),
+    ("common/similarity.clh", "m.t = fraction1(m.t)", "m.t = m.t", Shot::Room, Kernel::Step3a),
+    ("common/similarity.clh", "k < 3u", "k < 1u", Shot::Zoo, Kernel::Step3a),
+    ("common/similarity.clh", "k == 1u ? d : 0u - d", "d", Shot::Zoo, Kernel::Step3a),
+    ("common/similarity.clh", "*b = q;", "", Shot::Zoo, Kernel::Step3a),
+    ("common/similarity.clh", "step, b, &p, color_b, color_p)", "step, a, &p, color_a, color_p)", Shot::Zoo, Kernel::Step3a),
     ("common/similarity.clh", "wa = zb / (za + zb)", "wa = za / (za + zb)", Shot::Zoo, Kernel::Step3a),
     ("common/similarity.clh", "m.normal = normalize3(a->normal * wa + b->normal * wb)", "m.normal = a->normal * wa + b->normal * wb", Shot::Zoo, Kernel::Step2a),
     ("common/similarity.clh", "m.gcol = a->gcol * wa + b->gcol * wb", "m.gcol = a->gcol", Shot::Zoo, Kernel::Step3a),
