@@ -34,13 +34,15 @@ enum Shot {
     Large,
     /// [`Shot::Zoo`] with the strictest tolerances.
     Strictest,
+    /// [`Shot::Room`] by the paper's rules.
+    Paper,
 }
 
 impl Shot {
     fn scene(self) -> &'static str {
         match self {
             Shot::Zoo | Shot::Strictest => "zoo",
-            Shot::Room => "mirror-room",
+            Shot::Room | Shot::Paper => "mirror-room",
             Shot::Rods | Shot::RodsSwept | Shot::RodsInBands | Shot::Large => "rods",
         }
     }
@@ -54,6 +56,7 @@ impl Shot {
             // Large enough that smooth glass, slopes and faint shadows are interpolated too.
             Shot::Zoo => (options.width, options.height, options.depth) = (180, 136, 3),
             Shot::Room => {}
+            Shot::Paper => options = RenderOptions { width: 50, height: 38, ..RenderOptions::paper() },
         }
         if self == Shot::RodsInBands {
             options.band_rows = Some(8);
@@ -108,10 +111,11 @@ const CORRECTION: &[Mutant] = &[
     ("step4.cl", " && from_class != CLASS_CORRECTED", "", Shot::Rods, Kernel::Step4Mark),
     ("common/attributes.clh", "if (a->object != b->object) return true;", "if (a->object == b->object) return true;", Shot::Rods, Kernel::Step4Mark),
     ("common/attributes.clh", "(step->flags & STEP_COMPARE_SHADOW)", "(step->flags & STEP_GCOL_LINEAR)", Shot::Rods, Kernel::Step4Mark),
-    ("step4.cl", "from_class == CLASS_CORRECTED || !surfaces", "!surfaces", Shot::Rods, Kernel::Step4Mark),
-    ("step4.cl", "k < 3u", "k < 2u", Shot::Rods, Kernel::Step4Mark),
-    ("step4.cl", "|| by >= frame->height) return false", "|| by >= frame->height) return true", Shot::Rods, Kernel::Step4Mark),
-    ("common/attributes.clh", "return a->object != b->object ||", "return", Shot::Rods, Kernel::Step4Mark),
+    ("step4.cl", "from_class == CLASS_CORRECTED || !surfaces", "from_class == CLASS_TRACED || !surfaces", Shot::Zoo, Kernel::Step4Mark),
+    ("step4.cl", "(filled & 7u) == 7u", "(filled & 2u)", Shot::Zoo, Kernel::Step4Mark),
+    ("step4.cl", "(filled & 40u)", "(filled & 64u)", Shot::Zoo, Kernel::Step4Mark),
+    ("step4.cl", "const uint bx = x - back * (nx - x)", "const uint bx = x + back * (nx - x)", Shot::Zoo, Kernel::Step4Mark),
+    ("common/attributes.clh", "return a->object != b->object ||", "return a->object == b->object ||", Shot::Zoo, Kernel::Step4Mark),
     ("step4.cl", "case 0u: return x > 0u ?", "case 0u: return x > 25u ?", Shot::Rods, Kernel::Step4Mark),
     ("step4.cl", "case 1u: return x + 1u < frame->width ?", "case 1u: return x + 25u < frame->width ?", Shot::Rods, Kernel::Step4Mark),
     ("step4.cl", "case 2u: return y > frame->window_begin ?", "case 2u: return y > frame->window_begin + 19u ?", Shot::Rods, Kernel::Step4Mark),
@@ -205,13 +209,21 @@ const SIMILARITY: &[Mutant] = &[
     ("common/similarity.clh", ">= step->t_norm", ">= 0.5f * step->t_norm", Shot::Zoo, Kernel::Step2a),
     ("common/similarity.clh", "step->t_conv * distance", "0.0f * distance", Shot::Zoo, Kernel::Step2a),
     ("common/similarity.clh", "!= NO_TEXTURE", "== NO_TEXTURE", Shot::Room, Kernel::Step3a),
-    ("common/similarity.clh", "a < t_tex && b > 1.0f - t_tex", "a < t_tex && b < 1.0f - t_tex", Shot::Room, Kernel::Step2a),
+    ("common/similarity.clh", "a < t_tex && b > 1.0f - t_tex", "a < t_tex && b < 1.0f - t_tex", Shot::Paper, Kernel::Step2a),
     ("common/similarity.clh", "a->shadow_bits != b->shadow_bits", "(a->shadow_bits ^ b->shadow_bits) > 1u", Shot::Zoo, Kernel::Step2a),
     ("common/similarity.clh", "<= step->t_gcol", "<= 8.0f * step->t_gcol", Shot::Zoo, Kernel::Step3a),
     ("common/attributes.clh", "!(flags & STEP_GCOL_LINEAR)", "(flags & STEP_GCOL_LINEAR)", Shot::Zoo, Kernel::Step2a),
     ("common/similarity.clh", "(mask & ~step->lenient_tests)", "mask", Shot::Zoo, Kernel::Step3a),
     ("common/attributes.clh", "(p > q ? p - q : q - p) >= t_visible", "(p > q ? p - q : 0u) >= t_visible", Shot::Zoo, Kernel::Step3a),
     ("common/attributes.clh", "(step->flags & STEP_COMPARE_SHADING)", "(step->flags & STEP_GCOL_LINEAR)", Shot::Zoo, Kernel::Step4Mark),
+    ("common/similarity.clh", "return min2(e, 1.0f - e)", "return e", Shot::Room, Kernel::Step2a),
+    ("common/similarity.clh", "a - b > 0.5f ? b + 1.0f", "a - b > 0.5f ? b", Shot::Room, Kernel::Step3a),
+    ("common/similarity.clh", "b - a > 0.5f ? b - 1.0f", "b - a > 0.5f ? b", Shot::Room, Kernel::Step3a),
+    ("common/similarity.clh", "m.t = fraction1(m.t)", "m.t = m.t", Shot::Room, Kernel::Step3a),
+    ("common/similarity.clh", "k < 3u", "k < 1u", Shot::Zoo, Kernel::Step3a),
+    ("common/similarity.clh", "k == 1u ? d : 0u - d", "d", Shot::Zoo, Kernel::Step3a),
+    ("common/similarity.clh", "*b = q;", "", Shot::Zoo, Kernel::Step3a),
+    ("common/similarity.clh", "step, b, &p, color_b, color_p)", "step, a, &p, color_a, color_p)", Shot::Zoo, Kernel::Step3a),
     ("common/similarity.clh", "wa = zb / (za + zb)", "wa = za / (za + zb)", Shot::Zoo, Kernel::Step3a),
     ("common/similarity.clh", "m.normal = normalize3(a->normal * wa + b->normal * wb)", "m.normal = a->normal * wa + b->normal * wb", Shot::Zoo, Kernel::Step2a),
     ("common/similarity.clh", "m.gcol = a->gcol * wa + b->gcol * wb", "m.gcol = a->gcol", Shot::Zoo, Kernel::Step3a),

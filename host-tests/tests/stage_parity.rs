@@ -46,7 +46,8 @@ fn differing(results: &[KernelParity]) -> Vec<&KernelParity> {
 
 /// Every combination of the options that choose between paths through the kernels.
 fn combinations(width: u32, height: u32) -> Vec<RenderOptions> {
-    let mut all = vec![full(&sized(width, height))];
+    let mut all = vec![full(&sized(width, height)), sized(width, height)];
+    all.push(RenderOptions { width, height, ..RenderOptions::paper() });
     for block in [2, 4] {
         for correction in [Correction::Off, Correction::Object, Correction::ObjectAndShadow] {
             for correction_method in [CorrectionMethod::Converged, CorrectionMethod::Sweeps] {
