@@ -43,6 +43,24 @@ struct SceneOnDevice {
     tables: Buffer<u32>,
 }
 
+impl SceneOnDevice {
+    fn upload(door: &Door, scene: &SceneBuffers) -> Result<Self> {
+        Ok(SceneOnDevice {
+            frame: door.buffer("frame", 1)?,
+            lights: door.buffer_from("lights", &scene.lights)?,
+            nodes: door.buffer_from("nodes", &scene.tree.nodes)?,
+            leaf_triangles: door.buffer_from("leaf_triangles", &scene.tree.leaf_triangles)?,
+            triangles: door.buffer_from("triangles", &scene.triangles)?,
+            triangle_shading: door.buffer_from("triangle_shading", &scene.triangle_shading)?,
+            materials: door.buffer_from("materials", &scene.materials)?,
+            object_materials: door.buffer_from("object_materials", &scene.object_materials)?,
+            textures: door.buffer_from("textures", &scene.textures)?,
+            texels: door.buffer_from("texels", &scene.texels)?,
+            tables: door.buffer_from("tables", &scene.tables)?,
+        })
+    }
+}
+
 struct FrameOnDevice {
     attributes: Buffer<u32>,
     counters: Buffer<u32>,
@@ -71,19 +89,7 @@ impl OpenClBackend {
     /// # Errors
     /// A limit of the device or its profile, or a failing call.
     pub fn new(door: Door, scene: &Arc<SceneBuffers>, strict: bool) -> Result<Self> {
-        let on_device = SceneOnDevice {
-            frame: door.buffer("frame", 1)?,
-            lights: door.buffer_from("lights", &scene.lights)?,
-            nodes: door.buffer_from("nodes", &scene.tree.nodes)?,
-            leaf_triangles: door.buffer_from("leaf_triangles", &scene.tree.leaf_triangles)?,
-            triangles: door.buffer_from("triangles", &scene.triangles)?,
-            triangle_shading: door.buffer_from("triangle_shading", &scene.triangle_shading)?,
-            materials: door.buffer_from("materials", &scene.materials)?,
-            object_materials: door.buffer_from("object_materials", &scene.object_materials)?,
-            textures: door.buffer_from("textures", &scene.textures)?,
-            texels: door.buffer_from("texels", &scene.texels)?,
-            tables: door.buffer_from("tables", &scene.tables)?,
-        };
+        let on_device = SceneOnDevice::upload(&door, scene)?;
         let widest = door.limits().fit_work_group([SCAN_GROUP, 1], SCAN_GROUP as u64, true)[0];
         // The scratch memory of a scan: two words per work-item.
         let local_words = usize::try_from(door.limits().local_mem_bytes / 8).unwrap_or(usize::MAX).max(1);
@@ -105,6 +111,35 @@ impl OpenClBackend {
     pub fn mutate(&mut self, mutation: Option<Mutation>) {
         self.mutation = mutation;
         self.kernels.clear();
+    }
+
+    /// Does `work` with `scene` in place of the own one, with the same programs; afterwards the own scene, an empty frame
+    /// and fresh measurements are back. `scene` must be shaded by the own scene's rules.
+    pub(crate) fn with_scene<T>(
+        &mut self,
+        scene: &Arc<SceneBuffers>,
+        work: impl FnOnce(&mut Self) -> Result<T>,
+    ) -> Result<T> {
+        let uploaded = SceneOnDevice::upload(&self.door, scene)?;
+        let own = std::mem::replace(&mut self.scene, uploaded);
+        let done = work(self);
+        self.scene = own;
+        self.buffers = None;
+        let fresh = self.door.start_afresh();
+        let done = done?;
+        fresh.map(|()| done)
+    }
+
+    /// The options and texts that the device's compiler gets, in one: what a verdict about the kernels depends on.
+    pub(crate) fn program_texts(&self) -> String {
+        let stages = crate::stage::Stage::ALL.map(|stage| kernels::stage_source(stage, self.mutation.as_ref()));
+        let probe = kernels::assemble("probe.cl", self.mutation.as_ref());
+        format!("{} {:?} {probe} {}", layout::build_options(self.flavour), self.flavour, stages.concat())
+    }
+
+    /// The rules that its scene is shaded by.
+    pub(crate) fn shading(&self) -> Shading {
+        if self.flavour.anchor { Shading::Anchor } else { Shading::Full }
     }
 
     /// Milliseconds spent building programs so far.

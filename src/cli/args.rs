@@ -239,7 +239,7 @@ impl DrawArgs {
                 ShadingArg::Anchor => Shading::Anchor,
             },
             memory_budget_bytes: budget.transpose()?,
-            mutation: None,
+            ..RendererOptions::default()
         })
     }
 
