@@ -339,8 +339,8 @@ impl Renderer {
     }
 }
 
-/// What a frame may take where nobody says otherwise.
-const DEFAULT_BUDGET_BYTES: u64 = 4 << 30;
+/// Most device memory of a frame and its scene where nobody says otherwise, in bytes.
+pub const DEFAULT_BUDGET_BYTES: u64 = 4 << 30;
 
 fn open_device(buffers: &Arc<SceneBuffers>, options: &RendererOptions, notices: &mut Vec<String>) -> Result<Device> {
     let twin = || Device::Twin(Box::new(TwinBackend::new(Arc::clone(buffers))));

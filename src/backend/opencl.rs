@@ -8,7 +8,8 @@ use super::{Backend, BackendInfo, BufferSizes, FrameBuffer};
 use crate::error::Result;
 use crate::kernels::{self, Mutation};
 use crate::layout::{self, BuildFlavour, FrameParams, StepParams};
-use crate::opencl::{AnyBuffer, Arg, Buffer, Door, Kernel as DeviceKernel, Launch, ProgramSource};
+use crate::opencl::{AnyBuffer, Arg, Buffer, Door, Kernel as DeviceKernel, Launch, Limits, ProgramSource};
+use crate::profiles::Choices;
 use crate::scene_buffers::{SceneBuffers, Shading};
 use crate::stage::{Binding, Items, Kernel};
 
@@ -90,11 +91,7 @@ impl OpenClBackend {
     /// A limit of the device or its profile, or a failing call.
     pub fn new(door: Door, scene: &Arc<SceneBuffers>, strict: bool) -> Result<Self> {
         let on_device = SceneOnDevice::upload(&door, scene)?;
-        let widest = door.limits().fit_work_group([SCAN_GROUP, 1], SCAN_GROUP as u64, true)[0];
-        // The scratch memory of a scan: two words per work-item.
-        let local_words = usize::try_from(door.limits().local_mem_bytes / 8).unwrap_or(usize::MAX).max(1);
-        // Groups of one would never add anything up; a device that has no larger ones refuses the launch.
-        let scan_group = previous_power_of_two(widest.min(local_words)).max(2) as u32;
+        let scan_group = scan_group(door.limits());
         Ok(OpenClBackend {
             door,
             scene: on_device,
@@ -195,6 +192,24 @@ impl OpenClBackend {
     }
 }
 
+/// Work-items of a scan's work-group within `limits`: a power of two up to 256.
+pub fn scan_group(limits: &Limits) -> u32 {
+    let widest = limits.fit_work_group([SCAN_GROUP, 1], SCAN_GROUP as u64, true)[0];
+    // The scratch memory of a scan: two words per work-item.
+    let local_words = usize::try_from(limits.local_mem_bytes / 8).unwrap_or(usize::MAX).max(1);
+    // Groups of one would never add anything up; a device that has no larger ones refuses the launch.
+    previous_power_of_two(widest.min(local_words)).max(2) as u32
+}
+
+/// The work-group that `kernel` is launched with before it is fitted to the kernel's own limit; `None`: the scan's.
+pub fn work_group(choices: &Choices, kernel: Kernel) -> Option<[usize; 2]> {
+    match kernel.items() {
+        Items::Grid => Some(choices.work_group(kernel.stage().name())),
+        Items::List | Items::Chunks => Some([LIST_GROUP, 1]),
+        Items::Groups => None,
+    }
+}
+
 fn previous_power_of_two(n: usize) -> usize {
     1 << (usize::BITS - 1 - n.max(1).leading_zeros())
 }
@@ -269,23 +284,15 @@ impl Backend for OpenClBackend {
             }
         }
         let barrier = kernel.items() == Items::Groups;
-        let (global, local) = match kernel.items() {
-            Items::Grid => {
-                let wanted = self.door.choices().work_group(kernel.stage().name());
-                (
-                    [step.grid_width as usize, step.grid_height as usize],
-                    self.door.fit_work_group(device_kernel, wanted, false),
-                )
-            }
-            Items::List => {
-                ([step.item_count as usize, 1], self.door.fit_work_group(device_kernel, [LIST_GROUP, 1], false))
-            }
-            Items::Chunks => (
-                [step.item_count.div_ceil(32) as usize, 1],
-                self.door.fit_work_group(device_kernel, [LIST_GROUP, 1], false),
-            ),
+        let global = match kernel.items() {
+            Items::Grid => [step.grid_width as usize, step.grid_height as usize],
+            Items::List | Items::Groups => [step.item_count as usize, 1],
+            Items::Chunks => [step.item_count.div_ceil(32) as usize, 1],
+        };
+        let local = match work_group(self.door.choices(), kernel) {
+            Some(wanted) => self.door.fit_work_group(device_kernel, wanted, false),
             // The scan's levels depend on the group: it is not fitted but checked.
-            Items::Groups => ([step.item_count as usize, 1], [step.scan_group as usize, 1]),
+            None => [step.scan_group as usize, 1],
         };
         if global.contains(&0) {
             return Ok(());

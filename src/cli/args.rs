@@ -375,8 +375,8 @@ pub struct DevicesArgs {
     /// Write all limits as JSON into this file; `-` is standard output. Such a file is a device profile.
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
-    /// Show the limits beside those of this profile.
-    #[arg(long, default_value = "none")]
+    /// Show limits and choices beside those under this profile; `none`: the device's alone.
+    #[arg(long, default_value = "adreno-420")]
     pub profile: String,
 }
 
