@@ -22,6 +22,7 @@ __kernel void probe(__global uint *out) {
   out[n++] = OFFSET(FrameParams, width);
   out[n++] = OFFSET(FrameParams, plane_pitch);
   out[n++] = OFFSET(FrameParams, epsilon);
+  out[n++] = OFFSET(FrameParams, interior_end);
   out[n++] = sizeof(StepParams);
   p = &step;
   out[n++] = OFFSET(StepParams, reference_dx);

@@ -24,18 +24,18 @@ static inline bool spreads(__constant FrameParams *frame, const StepParams *step
   if (from_class != CLASS_TRACED && from_class != CLASS_CORRECTED) return false;
   if ((attributes[PLANE_CLASS * pitch + to] & CLASS_MASK) != CLASS_INTERPOLATED) return false;
   const Attributes a = load_attributes(attributes, pitch, at), b = load_attributes(attributes, pitch, to);
-  return hits_differ(step, &a, &b, color[y * frame->width + x], color[ny * frame->width + nx]);
+  return hits_differ(step, &a, &b, color[color_index(frame, x, y)], color[color_index(frame, nx, ny)]);
 }
 
-// Item i looks from source i / 4 in direction i % 4: left, right, up, down. NO_PIXEL beyond the picture.
+// Item i looks from source i / 4 in direction i % 4: left, right, up, down. NO_PIXEL beyond the window.
 static inline uint neighbour(__constant FrameParams *frame, const StepParams *step, __global const uint *list, uint i) {
   const uint source = list[step->source_offset + (i >> 2)];
   const uint x = source & 0xffffu, y = source >> 16;
   switch (i & 3u) {
   case 0u: return x > 0u ? source - 1u : NO_PIXEL;
   case 1u: return x + 1u < frame->width ? source + 1u : NO_PIXEL;
-  case 2u: return y > 0u ? source - 0x10000u : NO_PIXEL;
-  default: return y + 1u < frame->height ? source + 0x10000u : NO_PIXEL;
+  case 2u: return y > frame->window_begin ? source - 0x10000u : NO_PIXEL;
+  default: return y + 1u < frame->window_end ? source + 0x10000u : NO_PIXEL;
   }
 }
 
@@ -85,15 +85,22 @@ __kernel void step4_scatter(__constant FrameParams *frame, const StepParams step
   if (chunk < chunk_count) PACK_SCATTER(chunk, chunk_count)
 }
 
+// A pixel outside of the interior belongs to another window, which traces it; with STEP_SETTLE all listed pixels had
+// their rays when this window was drawn before. Such a pixel is only taken out of the game: it neither fires nor spreads.
 __kernel void step4_trace(SCENE_PARAMS, const StepParams step, __global const uint *list,
                           __global uint *out_attributes, __global uint *out_color, __global uint *out_counters) {
   const uint item = get_global_id(0);
   if (item >= step.item_count) return;
-  const uint pixel = list[step.list_offset + item];
-  trace_pixel(SCENE_ARGS, pixel & 0xffffu, pixel >> 16, CLASS_CORRECTED, &step, out_attributes, out_color, out_counters);
+  const uint pixel = list[step.list_offset + item], y = pixel >> 16;
+  if ((step.flags & STEP_SETTLE) || y < frame->interior_begin || y >= frame->interior_end) {
+    const uint at = PLANE_CLASS * frame->plane_pitch + pixel_plane_index(frame, pixel);
+    out_attributes[at] = (out_attributes[at] & ~CLASS_MASK) | CLASS_CONFIRMED;
+    return;
+  }
+  trace_pixel(SCENE_ARGS, pixel & 0xffffu, y, CLASS_CORRECTED, &step, out_attributes, out_color, out_counters);
 }
 
-// One work-item walks one line there and back: rows if step_x is 1, columns if step_y is 1.
+// One work-item walks one line of a frame that is one window there and back: rows if step_x is 1, columns if step_y is 1.
 __kernel void step4_sweep(SCENE_PARAMS, const StepParams step, __global uint *attributes, __global uint *out_color,
                           __global uint *out_counters) {
   const uint line = get_global_id(0);

@@ -16,7 +16,7 @@
 
 // Members are 16-byte vectors or 32-bit scalars; sizes are multiples of 16.
 
-// What stays the same for a whole frame.
+// What stays the same for a whole frame, or for a window of its rows where it does not fit into memory.
 typedef struct {
   float4 eye;           // xyz: position
   float4 forward;       // xyz: unit line of sight
@@ -30,11 +30,15 @@ typedef struct {
   uint height;          // rows of samples
   uint block;           // side of the base block: 1 (full tracing), 2 or 4
   uint phase_width;     // ceil(width / block)
-  uint phase_height;    // ceil(height / block)
+  uint phase_height;    // ceil((window_end - window_begin) / block)
   uint plane_pitch;     // words of one attribute plane: block * block * phase_width * phase_height
   uint light_count;     // at most 32
   uint depth_limit;     // most secondary rays in a chain, straight ones through panes not counted
   float epsilon;        // offset of secondary and shadow rays along the geometric normal, scene units
+  uint window_begin;    // first row that the buffers hold, a multiple of block
+  uint window_end;      // row behind the last that they hold
+  uint interior_begin;  // rows of the window that step4 may trace; the others are context for checks and correction
+  uint interior_end;
   uint pad0;
   uint pad1;
   uint pad2;

@@ -8,10 +8,12 @@ use crate::math::{cross, normalize};
 use crate::scene::View;
 use crate::scene_buffers::{SceneBuffers, Shading};
 
-/// Largest width or height: pixel addresses hold 16 bits for each.
+/// Largest width or height in pixels.
 pub const MAX_SIDE: u32 = 16384;
+/// Largest width or height in samples: addresses hold 16 bits for each, and the last one is [`crate::layout::NO_PIXEL`].
+pub const MAX_SAMPLE_SIDE: u32 = 65535;
 
-/// The parameters of a frame of `width` by `height` samples in base blocks of `block` (1, 2 or 4).
+/// The parameters of a frame, in one window, of `width` by `height` samples in base blocks of `block` (1, 2 or 4).
 pub fn frame_params(
     view: &View,
     buffers: &SceneBuffers,
@@ -50,6 +52,10 @@ pub fn frame_params(
         light_count: buffers.light_count,
         depth_limit: if anchor { 2 } else { depth_limit },
         epsilon: buffers.epsilon,
+        window_begin: 0,
+        window_end: height,
+        interior_begin: 0,
+        interior_end: height,
         pad: [0; 3],
     }
 }

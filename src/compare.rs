@@ -2,11 +2,11 @@
 //! Full and adaptive frames of one scene, in turn: speed, work and quality.
 
 use crate::error::Result;
-use crate::frame::{Frame, FrameStats};
+use crate::frame::{Frame, FrameStats, Keep};
 use crate::layout::*;
 use crate::metrics::{self, Quality, Rgb8, WrongPixels};
 use crate::options::{Mode, RenderOptions};
-use crate::renderer::{Keep, Renderer};
+use crate::renderer::Renderer;
 
 /// What a comparison found.
 #[derive(Debug, Clone)]
@@ -27,6 +27,8 @@ pub struct Comparison {
     pub wrong_shadow: WrongPixels,
     /// Traversal work of the adaptive frame by pixel class: base, traced, corrected.
     pub work_by_class: [u64; 3],
+    /// The class plane of the adaptive frame, one word a sample.
+    pub classes: Vec<u32>,
     /// The full picture.
     pub full_picture: Vec<u32>,
     /// The adaptive picture.
@@ -75,14 +77,17 @@ pub fn compare(
     let steps = (frames + 3) as f32;
 
     // The counting frames come first: they also warm up, and their planes are what pixels are compared by.
-    let keep = Keep { attributes: true, counters: true };
+    let keep = Keep::planes(&[PLANE_OBJECT, PLANE_SHADOW]).and(Keep::COUNTERS);
     let full = renderer.render_exactly(&full_options, keep)?;
     let full_objects = renderer.plane(PLANE_OBJECT)?;
     let full_shadows = renderer.plane(PLANE_SHADOW)?;
     progress(1.0 / steps);
-    let counted = renderer.render_exactly(&adaptive_options, keep)?;
+    let counted = renderer.render_exactly(&adaptive_options, keep.and(Keep::planes(&[PLANE_CLASS])))?;
+    let (width, height) = options.sample_size();
+    let wrong_object = metrics::wrong_pixels(&full_objects, &renderer.plane(PLANE_OBJECT)?, width, height)?;
+    let wrong_shadow = metrics::wrong_pixels(&full_shadows, &renderer.plane(PLANE_SHADOW)?, width, height)?;
+    drop((full_objects, full_shadows));
     let classes = renderer.plane(PLANE_CLASS)?;
-    let work_by_class = work_by_class(renderer, &classes)?;
     progress(2.0 / steps);
 
     let mut rounds = Rounds::default();
@@ -97,19 +102,15 @@ pub fn compare(
         rounds.add(full_ms, &adaptive.stats);
         progress((3 + round) as f32 / steps);
     }
-    let adaptive_objects = renderer.plane(PLANE_OBJECT)?;
-    let adaptive_shadows = renderer.plane(PLANE_SHADOW)?;
-
     let (width, height) = (options.width, options.height);
-    let wrong_object = metrics::wrong_pixels(&full_objects, &adaptive_objects, width, height)?;
-    let wrong_shadow = metrics::wrong_pixels(&full_shadows, &adaptive_shadows, width, height)?;
-    let interpolated: Vec<bool> = classes.iter().map(|c| c & CLASS_MASK == CLASS_INTERPOLATED).collect();
+    let interpolated = pixels_with_interpolated_samples(&classes, options);
     let quality = metrics::compare_interpolated(
         Rgb8::new(width, height, &full_picture)?,
         Rgb8::new(width, height, &adaptive.pixels)?,
         &interpolated,
     )?;
     let mut full_stats = full.stats;
+    let work_by_class = counted.stats.work_by_class.unwrap_or_default();
     let mut adaptive_stats = counted.stats;
     if frames > 0 {
         full_stats.frame_ms = median(&mut rounds.full_ms);
@@ -127,6 +128,7 @@ pub fn compare(
         wrong_object,
         wrong_shadow,
         work_by_class,
+        classes,
         full_picture,
         adaptive_frame: adaptive,
     })
@@ -152,20 +154,16 @@ impl Rounds {
     }
 }
 
-fn work_by_class(renderer: &mut Renderer, classes: &[u32]) -> Result<[u64; 3]> {
-    let steps = renderer.counter_plane(COUNTER_TRAVERSAL_STEPS)?;
-    let tests = renderer.counter_plane(COUNTER_TRIANGLE_TESTS)?;
-    let mut sums = [0; 3];
-    for ((class, steps), tests) in classes.iter().zip(steps).zip(tests) {
-        let slot = match class & CLASS_MASK {
-            CLASS_BASE => 0,
-            CLASS_TRACED => 1,
-            CLASS_CORRECTED | CLASS_CONFIRMED => 2,
-            _ => continue,
-        };
-        sums[slot] += u64::from(steps) + u64::from(tests);
+/// Which pixels have a sample that was left interpolated.
+fn pixels_with_interpolated_samples(classes: &[u32], options: &RenderOptions) -> Vec<bool> {
+    let (width, samples) = (options.width as usize, options.samples as usize);
+    let mut interpolated = vec![false; width * options.height as usize];
+    for (y, row) in classes.chunks_exact(width * samples).enumerate() {
+        for (x, class) in row.iter().enumerate() {
+            interpolated[y / samples * width + x / samples] |= class & CLASS_MASK == CLASS_INTERPOLATED;
+        }
     }
-    Ok(sums)
+    interpolated
 }
 
 fn median(values: &mut [f64]) -> f64 {

@@ -1,8 +1,49 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! A drawn frame and what it cost.
 
+use crate::layout::{COUNTER_COUNT, PLANE_COUNT};
 use crate::pipeline::PixelCounts;
 use crate::stage::Stage;
+
+/// What a frame keeps beside its picture.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Keep {
+    planes: u32,
+    /// Sums of the work counters.
+    pub counters: bool,
+}
+
+impl Keep {
+    /// Every attribute plane and every counter, to be read after the frame.
+    pub const EVERYTHING: Keep = Keep { planes: (1 << (PLANE_COUNT + COUNTER_COUNT)) - 1, counters: true };
+    /// The sums of the work counters.
+    pub const COUNTERS: Keep = Keep { planes: 0, counters: true };
+
+    /// These attribute planes (`PLANE_*`), to be read after the frame.
+    pub fn planes(planes: &[u32]) -> Keep {
+        Keep { planes: planes.iter().fold(0, |bits, plane| bits | 1 << plane), counters: false }
+    }
+
+    /// These counter planes (`COUNTER_*`), to be read after the frame, and the sums of all.
+    pub fn counter_planes(counters: &[u32]) -> Keep {
+        Keep { planes: counters.iter().fold(0, |bits, plane| bits | 1 << (PLANE_COUNT + plane)), counters: true }
+    }
+
+    /// Both.
+    pub fn and(self, other: Keep) -> Keep {
+        Keep { planes: self.planes | other.planes, counters: self.counters | other.counters }
+    }
+
+    /// Is the plane kept? Counter planes are numbered from [`PLANE_COUNT`] on.
+    pub(crate) fn has(self, plane: u32) -> bool {
+        self.planes >> plane & 1 != 0
+    }
+
+    /// Is any attribute plane kept?
+    pub(crate) fn attributes(self) -> bool {
+        self.planes & ((1 << PLANE_COUNT) - 1) != 0
+    }
+}
 
 /// A picture with its statistics.
 #[derive(Debug, Clone)]
@@ -61,6 +102,8 @@ pub struct FrameStats {
     pub rays: Option<RayCounts>,
     /// Work, if counters were kept.
     pub work: Option<WorkCounts>,
+    /// Traversal work of base, traced and corrected pixels, if counters were kept.
+    pub work_by_class: Option<[u64; 3]>,
     /// How often each test failed, in the order of [`crate::options::Test::ALL`], if counters were kept.
     pub failed_tests: Option<[u64; 7]>,
     /// An adaptive frame was asked for and a full one drawn, because the method did not pay in frames before.

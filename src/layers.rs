@@ -4,10 +4,11 @@
 use glam::Vec3;
 
 use crate::error::{Error, Result};
-use crate::frame::Frame;
+use crate::frame::{Frame, Keep};
 use crate::layout::*;
+use crate::math::unpack_normal;
 use crate::options::Test;
-use crate::renderer::{Keep, Renderer};
+use crate::renderer::Renderer;
 
 /// A picture of one quantity of a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -71,8 +72,12 @@ impl Layer {
     pub fn needs(self) -> Keep {
         match self {
             Layer::Color => Keep::default(),
-            Layer::Rays => Keep { attributes: true, counters: true },
-            _ => Keep { attributes: true, counters: false },
+            Layer::Class | Layer::FailMask | Layer::FailedTest(_) => Keep::planes(&[PLANE_CLASS]),
+            Layer::Object => Keep::planes(&[PLANE_OBJECT]),
+            Layer::Normal => Keep::planes(&[PLANE_OBJECT, PLANE_NORMAL]),
+            Layer::Depth => Keep::planes(&[PLANE_OBJECT, PLANE_POSITION_X, PLANE_POSITION_Y, PLANE_POSITION_Z]),
+            Layer::Shadow => Keep::planes(&[PLANE_OBJECT, PLANE_SHADOW]),
+            Layer::Rays => Keep::counter_planes(&[COUNTER_TRAVERSAL_STEPS, COUNTER_TRIANGLE_TESTS]),
         }
     }
 
@@ -94,15 +99,15 @@ fn unit_byte(v: f32) -> u32 {
     (v.clamp(0.0, 1.0) * 255.0 + 0.5) as u32
 }
 
-/// Draws `layer` of the frame that `renderer` drew last.
+/// Draws `layer` of the frame that `renderer` drew last: a pixel for each sample, but for [`Layer::Color`].
 ///
 /// # Errors
 /// [`Error::InvalidOption`] if the frame kept too little for this layer; a failing read.
 pub fn draw(layer: Layer, renderer: &mut Renderer, frame: &Frame) -> Result<Vec<u32>> {
     match layer {
         Layer::Color => Ok(frame.pixels.clone()),
-        Layer::Class => Ok(renderer.plane(PLANE_CLASS)?.into_iter().map(class_color).collect()),
-        Layer::FailMask => Ok(renderer.plane(PLANE_CLASS)?.into_iter().map(fail_mask_color).collect()),
+        Layer::Class => Ok(class_picture(&renderer.plane(PLANE_CLASS)?)),
+        Layer::FailMask => Ok(fail_mask_picture(&renderer.plane(PLANE_CLASS)?)),
         Layer::FailedTest(test) => {
             let lit = |c: u32| if c & test.fail_bit() != 0 { word(255, 255, 255) } else { word(0, 0, 0) };
             Ok(renderer.plane(PLANE_CLASS)?.into_iter().map(lit).collect())
@@ -113,6 +118,16 @@ pub fn draw(layer: Layer, renderer: &mut Renderer, frame: &Frame) -> Result<Vec<
         Layer::Shadow => shadow(renderer),
         Layer::Rays => rays(renderer),
     }
+}
+
+/// [`Layer::Class`] of a class plane.
+pub fn class_picture(classes: &[u32]) -> Vec<u32> {
+    classes.iter().copied().map(class_color).collect()
+}
+
+/// [`Layer::FailMask`] of a class plane.
+pub fn fail_mask_picture(classes: &[u32]) -> Vec<u32> {
+    classes.iter().copied().map(fail_mask_color).collect()
 }
 
 fn class_color(word_of_class: u32) -> u32 {
@@ -149,8 +164,8 @@ fn object_color(object: u32) -> u32 {
     word(64 + (h & 0xbf), 64 + ((h >> 8) & 0xbf), 64 + ((h >> 16) & 0xbf))
 }
 
-fn vectors(renderer: &mut Renderer, first_plane: u32) -> Result<Vec<Vec3>> {
-    let [x, y, z] = [0, 1, 2].map(|i| renderer.plane(first_plane + i));
+fn positions(renderer: &mut Renderer) -> Result<Vec<Vec3>> {
+    let [x, y, z] = [PLANE_POSITION_X, PLANE_POSITION_Y, PLANE_POSITION_Z].map(|plane| renderer.plane(plane));
     let float = f32::from_bits;
     let vectors = x?.into_iter().zip(y?).zip(z?).map(|((x, y), z)| Vec3::new(float(x), float(y), float(z)));
     Ok(vectors.collect())
@@ -158,7 +173,7 @@ fn vectors(renderer: &mut Renderer, first_plane: u32) -> Result<Vec<Vec3>> {
 
 fn normal(renderer: &mut Renderer) -> Result<Vec<u32>> {
     let objects = renderer.plane(PLANE_OBJECT)?;
-    let normals = vectors(renderer, PLANE_NORMAL_X)?;
+    let normals = renderer.plane(PLANE_NORMAL)?.into_iter().map(unpack_normal);
     let color = |(object, n): (u32, Vec3)| match object {
         NO_OBJECT => word(0, 0, 0),
         _ => word(unit_byte(n.x * 0.5 + 0.5), unit_byte(n.y * 0.5 + 0.5), unit_byte(n.z * 0.5 + 0.5)),
@@ -168,7 +183,7 @@ fn normal(renderer: &mut Renderer) -> Result<Vec<u32>> {
 
 fn depth(renderer: &mut Renderer) -> Result<Vec<u32>> {
     let objects = renderer.plane(PLANE_OBJECT)?;
-    let positions = vectors(renderer, PLANE_POSITION_X)?;
+    let positions = positions(renderer)?;
     let (eye, extent) = (renderer.view().camera.eye, renderer.view().extent);
     let color = |(object, p): (u32, Vec3)| {
         // Half as bright at a distance of half the extent: works without knowing the farthest hit.

@@ -24,32 +24,26 @@ shared_constants! {
     PLANE_POSITION_Y = 1;
     /// Attribute plane: z of the hit position.
     PLANE_POSITION_Z = 2;
-    /// Attribute plane: x of the unit shading normal (float bits).
-    PLANE_NORMAL_X = 3;
-    /// Attribute plane: y of the unit shading normal.
-    PLANE_NORMAL_Y = 4;
-    /// Attribute plane: z of the unit shading normal.
-    PLANE_NORMAL_Z = 5;
-    /// Attribute plane: texture coordinate s in `[0, 1)` (float bits).
-    PLANE_TEXCOORD_S = 6;
-    /// Attribute plane: texture coordinate t in `[0, 1)`.
-    PLANE_TEXCOORD_T = 7;
     /// Attribute plane: red of the light gathered by secondary rays, linear (float bits).
-    PLANE_GCOL_R = 8;
+    PLANE_GCOL_R = 3;
     /// Attribute plane: green of it.
-    PLANE_GCOL_G = 9;
+    PLANE_GCOL_G = 4;
     /// Attribute plane: blue of it.
-    PLANE_GCOL_B = 10;
+    PLANE_GCOL_B = 5;
+    /// Attribute plane: the unit shading normal ([`crate::math::pack_normal`]).
+    PLANE_NORMAL = 6;
+    /// Attribute plane: texture coordinates in `[0, 1)` ([`crate::math::pack_texcoord`]).
+    PLANE_TEXCOORD = 7;
     /// Attribute plane: object id, or [`NO_OBJECT`].
-    PLANE_OBJECT = 11;
+    PLANE_OBJECT = 8;
     /// Attribute plane: shadow bits, one per light.
-    PLANE_SHADOW = 12;
+    PLANE_SHADOW = 9;
     /// Attribute plane: pixel class (`CLASS_*`) in the low bits, fail mask (`FAIL_*`) above.
-    PLANE_CLASS = 13;
+    PLANE_CLASS = 10;
     /// Attribute plane: step4's claims, the lowest item that wants the pixel.
-    PLANE_CLAIM = 14;
-    /// Number of attribute planes.
-    PLANE_COUNT = 15;
+    PLANE_CLAIM = 11;
+    /// Number of attribute planes: 48 bytes a sample.
+    PLANE_COUNT = 12;
 
     /// Counter plane: inner kd-tree nodes visited.
     COUNTER_TRAVERSAL_STEPS = 0;
@@ -110,6 +104,8 @@ shared_constants! {
     STEP_GCOL_LINEAR = 8;
     /// Step flag: step4 compares normals (by `t_norm`) and reflected colours (by `t_gcol`) too.
     STEP_COMPARE_SHADING = 16;
+    /// Step flag: step4's listed pixels had their rays already and are only marked.
+    STEP_SETTLE = 32;
 
     /// Surface kind: diffuse and highlight only.
     SURFACE_OPAQUE = 0;
@@ -192,7 +188,7 @@ pub fn build_options(flavour: BuildFlavour) -> String {
     options
 }
 
-/// `FrameParams` of `kernels/types.h`: what stays the same for a whole frame.
+/// `FrameParams` of `kernels/types.h`: what stays the same for a whole frame or one window of it.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[allow(missing_docs)] // documented member by member in kernels/types.h
@@ -214,9 +210,13 @@ pub struct FrameParams {
     pub light_count: u32,
     pub depth_limit: u32,
     pub epsilon: f32,
+    pub window_begin: u32,
+    pub window_end: u32,
+    pub interior_begin: u32,
+    pub interior_end: u32,
     pub pad: [u32; 3],
 }
-const _: () = assert!(size_of::<FrameParams>() == 176);
+const _: () = assert!(size_of::<FrameParams>() == 192);
 
 /// `StepParams` of `kernels/types.h`: what one launch works on.
 #[repr(C)]
@@ -317,13 +317,14 @@ const _: () = assert!(size_of::<TriangleShading>() == 48);
 /// What the probe kernel must report: sizes and offsets in bytes, in its order.
 pub fn expected_probe() -> Vec<u32> {
     use std::mem::offset_of;
-    let bytes: [usize; 24] = [
+    let bytes: [usize; 25] = [
         size_of::<FrameParams>(),
         offset_of!(FrameParams, up),
         offset_of!(FrameParams, bounds_max),
         offset_of!(FrameParams, width),
         offset_of!(FrameParams, plane_pitch),
         offset_of!(FrameParams, epsilon),
+        offset_of!(FrameParams, interior_end),
         size_of::<StepParams>(),
         offset_of!(StepParams, reference_dx),
         offset_of!(StepParams, item_count),
@@ -381,7 +382,7 @@ mod tests {
     #[test]
     fn options_name_every_constant_once() {
         let options = build_options(BuildFlavour { strict: true, count: false, anchor: false });
-        assert_eq!(options.matches("-DPLANE_CLAIM=14u").count(), 1);
+        assert_eq!(options.matches("-DPLANE_CLAIM=11u").count(), 1);
         assert!(options.contains("-DRAREFY_STRICT=1") && !options.contains("RAREFY_COUNT"));
         let mut names: Vec<&str> = SHARED_CONSTANTS.iter().map(|(name, _)| *name).collect();
         names.sort_unstable();

@@ -21,6 +21,7 @@
 //! ```
 
 pub mod backend;
+pub mod bands;
 pub mod builtin;
 pub mod camera;
 pub mod compare;
@@ -41,6 +42,7 @@ pub mod profiles;
 pub mod quick_test;
 pub mod renderer;
 pub mod report;
+pub mod resolve;
 pub mod scene;
 pub mod scene_buffers;
 pub mod selftest;

@@ -92,8 +92,6 @@ pub fn pow_poly(x: f32, y: f32) -> f32 {
 }
 
 /// Packs a unit vector into 32 bits: octahedral mapping, 16 signed bits for each coordinate (low half: x).
-///
-/// Done once on the host; only [`unpack_normal`] exists in kernels.
 pub fn pack_normal(n: Vec3) -> u32 {
     let sum = n.x.abs() + n.y.abs() + n.z.abs();
     let (mut x, mut y) = if sum > 0.0 { (n.x / sum, n.y / sum) } else { (0.0, 0.0) };
@@ -102,7 +100,7 @@ pub fn pack_normal(n: Vec3) -> u32 {
         x = if x >= 0.0 { 1.0 - ay } else { ay - 1.0 };
         y = if y >= 0.0 { 1.0 - ax } else { ax - 1.0 };
     }
-    let quantise = |v: f32| (v * 32767.0).round().clamp(-32767.0, 32767.0) as i32 as u32 & 0xffff;
+    let quantise = |v: f32| clamp((v * 32767.0).round(), -32767.0, 32767.0) as i32 as u32 & 0xffff;
     quantise(x) | quantise(y) << 16
 }
 
@@ -116,6 +114,18 @@ pub fn unpack_normal(packed: u32) -> Vec3 {
     let fold = max2(-z, 0.0);
     let v = Vec3::new(if x >= 0.0 { x - fold } else { x + fold }, if y >= 0.0 { y - fold } else { y + fold }, z);
     normalize(v)
+}
+
+/// Two coordinates in `[0, 1)` as 16-bit fractions, `s` in the low half.
+#[inline]
+pub fn pack_texcoord(s: f32, t: f32) -> u32 {
+    (s * 65536.0) as u32 | ((t * 65536.0) as u32) << 16
+}
+
+/// A coordinate that [`pack_texcoord`] packed: the middle of its step.
+#[inline]
+pub fn unpack_texcoord(half_word: u32) -> f32 {
+    (half_word as f32 + 0.5) * (1.0 / 65536.0)
 }
 
 /// The fraction of `x`: `x - floor(x)`, in `[0, 1)`.

@@ -120,6 +120,8 @@ pub struct RenderOptions {
     pub width: u32,
     /// Height in pixels, likewise.
     pub height: u32,
+    /// Samples per pixel and axis: 1, 2 or 4. The method works on the grid of samples; pixels are means of theirs.
+    pub samples: u32,
     /// Which pixels get rays.
     pub mode: Mode,
     /// Side of the base blocks: 2 (paper) or 4.
@@ -150,6 +152,9 @@ pub struct RenderOptions {
     pub correction_t_norm: f32,
     /// Post-correction: largest distance of reflected colours that are taken to be the same.
     pub correction_t_gcol: f32,
+    /// Most rows of samples that are in device memory at once; `None`: as many as the budget allows. The picture does
+    /// not depend on it.
+    pub band_rows: Option<u32>,
 }
 
 impl Default for RenderOptions {
@@ -157,6 +162,7 @@ impl Default for RenderOptions {
         RenderOptions {
             width: 1024,
             height: 1024,
+            samples: 1,
             mode: Mode::default(),
             block: 2,
             depth: 4,
@@ -172,6 +178,7 @@ impl Default for RenderOptions {
             correction_t_visible: 8,
             correction_t_norm: 0.9,
             correction_t_gcol: 0.1,
+            band_rows: None,
         }
     }
 }
@@ -194,6 +201,11 @@ impl RenderOptions {
         }
     }
 
+    /// Width and height of the frame in samples.
+    pub fn sample_size(&self) -> (u32, u32) {
+        (self.width.saturating_mul(self.samples), self.height.saturating_mul(self.samples))
+    }
+
     /// Checks every value against its range.
     ///
     /// # Errors
@@ -204,6 +216,17 @@ impl RenderOptions {
             return Err(Error::option(
                 "--size",
                 format!("{}x{} is out of range; each side may be 1 to {max} pixels", self.width, self.height),
+            ));
+        }
+        if !matches!(self.samples, 1 | 2 | 4) {
+            return Err(Error::option("--samples", format!("{} is not 1, 2 or 4", self.samples)));
+        }
+        let (width, height) = self.sample_size();
+        let most = crate::camera::MAX_SAMPLE_SIDE;
+        if width > most || height > most {
+            return Err(Error::option(
+                "--samples",
+                format!("{width}x{height} samples are too many; each side may be 1 to {most}; choose a smaller --size"),
             ));
         }
         if !matches!(self.block, 2 | 4) {

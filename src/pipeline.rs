@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! A frame, step by step, as the paper tells it. The same sequence drives every back end.
+//! A frame, step by step, as the paper tells it. The same sequence drives every back end. A frame that does not fit into
+//! memory is drawn window by window ([`crate::bands`]).
 
-use crate::backend::Backend;
+use crate::backend::{Backend, FrameBuffer};
 use crate::error::Result;
 use crate::layout::*;
 use crate::options::{Correction, CorrectionMethod, Interpolation, RenderOptions, Tolerances};
@@ -19,6 +20,24 @@ pub struct PixelCounts {
     pub interpolated: u64,
     /// Traced in step4, changed or confirmed.
     pub corrected: u64,
+}
+
+impl PixelCounts {
+    /// The counts of an adaptive frame's interior rows, of which so many pixels were traced and corrected.
+    pub fn new(frame: &FrameParams, traced: u64, corrected: u64) -> Self {
+        let rows = frame.interior_end - frame.interior_begin;
+        let base = u64::from(frame.phase_width) * u64::from(rows.div_ceil(frame.block));
+        let pixels = u64::from(frame.width) * u64::from(rows);
+        PixelCounts { base, traced, corrected, interpolated: pixels - base - traced - corrected }
+    }
+
+    /// Adds the counts of another window.
+    pub fn add(&mut self, other: &PixelCounts) {
+        self.base += other.base;
+        self.traced += other.traced;
+        self.interpolated += other.interpolated;
+        self.corrected += other.corrected;
+    }
 }
 
 /// A class of adaptive pixels: its grid, and where the two references of each pixel lie.
@@ -42,7 +61,7 @@ const STEP3B: PackKernels =
 const STEP4: PackKernels =
     PackKernels { count: Kernel::Step4Count, scan: Kernel::Step4Scan, scatter: Kernel::Step4Scatter };
 
-/// Traces every pixel: step1's kernel at stride 1. `store` keeps the attributes of all pixels.
+/// Traces every pixel of a window: step1's kernel at stride 1. `store` keeps the attributes of all pixels.
 ///
 /// # Errors
 /// Whatever the back end reports.
@@ -50,10 +69,10 @@ pub fn full_frame(backend: &mut dyn Backend, frame: &FrameParams, store: bool) -
     let flags = if store { STEP_STORE } else { 0 };
     let step = StepParams { flags, ..grid(frame, (0, 0), (1, 1)) };
     backend.run(Kernel::Step1, &step)?;
-    Ok(PixelCounts { base: u64::from(frame.width) * u64::from(frame.height), ..PixelCounts::default() })
+    Ok(PixelCounts::new(frame, 0, 0))
 }
 
-/// The method: trace the base pixels, rebuild or trace the others, correct.
+/// The method on a frame that is one window.
 ///
 /// # Errors
 /// Whatever the back end reports.
@@ -63,39 +82,109 @@ pub fn adaptive_frame(
     options: &RenderOptions,
     extent: f32,
 ) -> Result<PixelCounts> {
+    let listed = adaptive_window(backend, frame, options, extent, &Given::default())?;
+    let (traced, corrected) = (listed.traced().len() as u64, listed.corrected().len() as u64);
+    Ok(PixelCounts::new(frame, traced, corrected))
+}
+
+/// The method: trace the base pixels, rebuild or trace the others, correct.
+///
+/// # Errors
+/// Whatever the back end reports.
+pub fn adaptive_window(
+    backend: &mut dyn Backend,
+    frame: &FrameParams,
+    options: &RenderOptions,
+    extent: f32,
+    given: &Given,
+) -> Result<Listed> {
     let block = frame.block;
     let base = grid(frame, (0, 0), (block, block));
     backend.run(Kernel::Step1, &StepParams { flags: STEP_STORE, ..base })?;
 
-    let mut traced = 0;
+    let given = list_given(backend, given)?;
+    let mut listed = given.len();
     let mut stride = block;
     while stride >= 2 {
         for class in adaptive_grids(frame, stride, options, extent) {
             backend.run(class.check, &class.params)?;
-            let count = pack_grid(backend, &class, traced)?;
-            let list = StepParams { list_offset: traced, item_count: count, ..class.params };
+            let count = pack_grid(backend, &class, listed)?;
+            let list = StepParams { list_offset: listed, item_count: count, ..class.params };
             run_list(backend, class.trace, &list)?;
-            traced += count;
+            listed += count;
         }
         stride /= 2;
     }
 
-    let corrected = correct(backend, frame, options, traced)?;
-    let base = u64::from(base.grid_width) * u64::from(base.grid_height);
-    let pixels = u64::from(frame.width) * u64::from(frame.height);
-    let (traced, corrected) = (u64::from(traced), u64::from(corrected));
-    Ok(PixelCounts { base, traced, corrected, interpolated: pixels - base - traced - corrected })
+    let corrected = correct(backend, frame, options, &given, listed)?;
+    Ok(Listed { given, traced_end: listed, corrected_end: listed + corrected })
 }
 
-/// The grid of the pixels `origin + step * item` within the frame.
+/// What post-correction already knows of a window when it is drawn.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Given<'a> {
+    /// Pixels of the window that had their correction rays before, when it was drawn for the first time: now only
+    /// `fired` spreads. `None` when this is the first time.
+    pub settled: Option<&'a [u32]>,
+    /// Pixels of the interior at which pixels of other windows fire.
+    pub fired: &'a [u32],
+}
+
+/// The pixel addresses that drawing a window left in the list, in this order.
+#[derive(Debug, Clone, Copy)]
+pub struct Listed {
+    given: GivenList,
+    traced_end: u32,
+    corrected_end: u32,
+}
+
+impl Listed {
+    /// Traced in step2c and step3c.
+    pub fn traced(&self) -> std::ops::Range<usize> {
+        self.given.len() as usize..self.traced_end as usize
+    }
+
+    /// Fired at in step4, those of [`Given`] not included; outside of the interior they got no ray.
+    pub fn corrected(&self) -> std::ops::Range<usize> {
+        self.traced_end as usize..self.corrected_end as usize
+    }
+}
+
+/// The list's first entries.
+#[derive(Debug, Clone, Copy)]
+struct GivenList {
+    settled: u32,
+    fired: u32,
+    first_time: bool,
+}
+
+impl GivenList {
+    fn len(&self) -> u32 {
+        self.settled + self.fired
+    }
+}
+
+fn list_given(backend: &mut dyn Backend, given: &Given) -> Result<GivenList> {
+    let settled = given.settled.unwrap_or(&[]);
+    if !settled.is_empty() || !given.fired.is_empty() {
+        backend.write(FrameBuffer::List, &[settled, given.fired].concat())?;
+    }
+    Ok(GivenList {
+        settled: settled.len() as u32,
+        fired: given.fired.len() as u32,
+        first_time: given.settled.is_none(),
+    })
+}
+
+/// The grid of the pixels `origin + step * item` within the window, whose first row is a multiple of the block.
 fn grid(frame: &FrameParams, origin: (u32, u32), step: (u32, u32)) -> StepParams {
     StepParams {
         origin_x: origin.0,
-        origin_y: origin.1,
+        origin_y: frame.window_begin + origin.1,
         step_x: step.0,
         step_y: step.1,
         grid_width: frame.width.saturating_sub(origin.0).div_ceil(step.0),
-        grid_height: frame.height.saturating_sub(origin.1).div_ceil(step.1),
+        grid_height: (frame.window_end - frame.window_begin).saturating_sub(origin.1).div_ceil(step.1),
         ..bytemuck::Zeroable::zeroed()
     }
 }
@@ -174,8 +263,14 @@ fn run_list(backend: &mut dyn Backend, kernel: Kernel, step: &StepParams) -> Res
     if step.item_count == 0 { Ok(()) } else { backend.run(kernel, step) }
 }
 
-/// step4: spreads from the `traced` listed pixels; returns how many rays it fired.
-fn correct(backend: &mut dyn Backend, frame: &FrameParams, options: &RenderOptions, traced: u32) -> Result<u32> {
+/// step4: spreads from the pixels listed so far; returns how many more pixels it fired at.
+fn correct(
+    backend: &mut dyn Backend,
+    frame: &FrameParams,
+    options: &RenderOptions,
+    given: &GivenList,
+    listed: u32,
+) -> Result<u32> {
     let flags = match options.correction {
         Correction::Off => return Ok(0),
         Correction::Object => STEP_STORE,
@@ -191,24 +286,29 @@ fn correct(backend: &mut dyn Backend, frame: &FrameParams, options: &RenderOptio
         ..bytemuck::Zeroable::zeroed()
     };
     match options.correction_method {
-        CorrectionMethod::Converged => correct_converged(backend, &step, traced),
+        CorrectionMethod::Converged => correct_converged(backend, &step, given, listed),
         CorrectionMethod::Sweeps => correct_by_sweeps(backend, frame, &step),
     }
 }
 
 /// Rounds of mark, pack and trace, each from the pixels that the last one traced, until none is wanted.
-fn correct_converged(backend: &mut dyn Backend, step: &StepParams, traced: u32) -> Result<u32> {
-    let (mut source_offset, mut sources, mut corrected) = (0, traced, 0);
+fn correct_converged(backend: &mut dyn Backend, step: &StepParams, given: &GivenList, listed: u32) -> Result<u32> {
+    let settle = StepParams { item_count: given.settled, flags: step.flags | STEP_SETTLE, ..*step };
+    run_list(backend, Kernel::Step4Trace, &settle)?;
+    let fire = StepParams { list_offset: given.settled, item_count: given.fired, ..*step };
+    run_list(backend, Kernel::Step4Trace, &fire)?;
+    let mut source_offset = given.settled;
+    let mut sources = if given.first_time { listed - given.settled } else { given.fired };
+    let mut list_offset = listed;
     while sources > 0 {
-        let list_offset = source_offset + sources;
         let round = StepParams { source_offset, list_offset, item_count: 4 * sources, ..*step };
         backend.run(Kernel::Step4Mark, &round)?;
         let count = pack(backend, &STEP4, &round)?;
         run_list(backend, Kernel::Step4Trace, &StepParams { item_count: count, ..round })?;
-        corrected += count;
         (source_offset, sources) = (list_offset, count);
+        list_offset += count;
     }
-    Ok(corrected)
+    Ok(list_offset - listed)
 }
 
 /// Each row there and back, then each column.
@@ -218,7 +318,7 @@ fn correct_by_sweeps(backend: &mut dyn Backend, frame: &FrameParams, step: &Step
     // A sweep lists nothing: its rays are counted from the classes.
     let pitch = frame.plane_pitch as usize;
     let at = PLANE_CLASS as usize * pitch;
-    let classes = backend.read(crate::backend::FrameBuffer::Attributes, at..at + pitch)?;
+    let classes = backend.read(FrameBuffer::Attributes, at..at + pitch)?;
     let pixels = (0..frame.height).flat_map(|y| (0..frame.width).map(move |x| (x, y)));
     let is_corrected = |class: u32| matches!(class & CLASS_MASK, CLASS_CORRECTED | CLASS_CONFIRMED);
     Ok(pixels.filter(|&(x, y)| is_corrected(classes[plane_index(frame, x, y) as usize])).count() as u32)

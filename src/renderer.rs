@@ -6,19 +6,22 @@ use std::time::Instant;
 
 use crate::backend::opencl::OpenClBackend;
 use crate::backend::twin::TwinBackend;
-use crate::backend::{Backend, BackendInfo, BufferSizes, FrameBuffer};
+use crate::backend::{Backend, BackendInfo, FrameBuffer};
+use crate::bands::{self, Collected, CounterSums, Plan, Room};
 use crate::camera::frame_params;
 use crate::error::{Error, Result};
 use crate::fallback::Fallback;
-use crate::frame::{Frame, FrameStats, RayCounts, WorkCounts};
+pub use crate::frame::Keep;
+use crate::frame::{Frame, FrameStats};
 use crate::kdtree::{BuildOptions, KdStatistics, KdTree};
 use crate::kernels::Mutation;
 use crate::layout::*;
 use crate::opencl::{self, CacheFolder, OpenOptions};
-use crate::options::{Mode, RenderOptions, Test};
+use crate::options::{Mode, RenderOptions};
 use crate::pipeline;
 use crate::profiles::Profile;
 use crate::quick_test;
+use crate::resolve::resolve;
 use crate::scene::{Scene, View};
 use crate::scene_buffers::{SceneBuffers, Shading};
 use crate::stage::Stage;
@@ -68,15 +71,6 @@ pub struct BuildTimes {
     pub program_ms: f64,
 }
 
-/// What a frame keeps beside its picture.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Keep {
-    /// Attributes of every pixel: layers can be read afterwards. An adaptive frame always keeps them.
-    pub attributes: bool,
-    /// Work counters of every pixel.
-    pub counters: bool,
-}
-
 enum Device {
     Twin(Box<TwinBackend>),
     OpenCl(Box<OpenClBackend>),
@@ -91,6 +85,20 @@ impl Device {
     }
 }
 
+/// The frame drawn last, as far as its planes can be read.
+struct LastFrame {
+    keep: Keep,
+    planes: Planes,
+}
+
+/// Where planes are.
+enum Planes {
+    /// In the device's buffers: the frame was one window.
+    OnDevice(FrameParams),
+    /// On the host.
+    Collected(Collected),
+}
+
 /// A scene on a device, ready to draw frames.
 pub struct Renderer {
     name: String,
@@ -102,7 +110,7 @@ pub struct Renderer {
     memory_budget_bytes: Option<u64>,
     times: BuildTimes,
     notices: Vec<String>,
-    last_frame: Option<(FrameParams, Keep)>,
+    last_frame: Option<LastFrame>,
     fallback: Fallback,
 }
 
@@ -165,123 +173,98 @@ impl Renderer {
     pub fn render_exactly(&mut self, options: &RenderOptions, keep: Keep) -> Result<Frame> {
         options.validate()?;
         let full = options.mode == Mode::Full;
-        let keep = Keep { attributes: keep.attributes || !full, ..keep };
         let block = if full { 1 } else { options.block };
-        let params = frame_params(&self.view, &self.buffers, options.width, options.height, block, options.depth);
-        let sizes = self.buffer_sizes(&params, keep)?;
+        let (width, height) = options.sample_size();
+        let params = frame_params(&self.view, &self.buffers, width, height, block, options.depth);
+        let room = self.room(keep.attributes() || !full, keep.counters);
+        let plan = Plan::new(&params, &room, options.band_rows)?;
+        self.last_frame = None;
         let backend = self.device.backend();
         backend.take_timings()?;
         let started = Instant::now();
-        backend.begin(&params, &sizes)?;
-        let counts = if full {
-            pipeline::full_frame(backend, &params, keep.attributes)?
+        let (counts, samples, planes) = if plan.is_one_window() {
+            backend.begin(&params, &plan.sizes)?;
+            let counts = if full {
+                pipeline::full_frame(backend, &params, keep.attributes())?
+            } else {
+                pipeline::adaptive_frame(backend, &params, options, self.view.extent)?
+            };
+            (counts, backend.read(FrameBuffer::Color, 0..plan.sizes.color)?, Planes::OnDevice(params))
         } else {
-            pipeline::adaptive_frame(backend, &params, options, self.view.extent)?
+            let (counts, mut collected) = bands::draw(backend, &plan, options, self.view.extent, keep)?;
+            (counts, std::mem::take(&mut collected.colors), Planes::Collected(collected))
         };
-        let pixels = backend.read(FrameBuffer::Color, 0..sizes.color)?;
+        let pixels = match options.samples {
+            1 => samples,
+            samples_per_axis => resolve(&samples, options.width, options.height, samples_per_axis),
+        };
         let frame_ms = started.elapsed().as_secs_f64() * 1e3;
         let mut stages_ms = [0.0; Stage::ALL.len()];
         for (kernel, ms) in backend.take_timings()? {
             stages_ms[kernel.stage() as usize] += ms;
         }
-        self.last_frame = Some((params, keep));
         let mut stats = FrameStats { frame_ms, stages_ms, pixels: counts, ..FrameStats::default() };
         if keep.counters {
-            let (rays, work) = self.count_work(&params)?;
-            (stats.rays, stats.work) = (Some(rays), Some(work));
-            if !full {
-                stats.failed_tests = Some(self.count_failed_tests(&params)?);
-            }
+            let sums = match &planes {
+                Planes::OnDevice(params) => {
+                    let primary = counts.base + counts.traced + counts.corrected;
+                    let mut sums = CounterSums { primary, ..CounterSums::default() };
+                    bands::sum_counters(backend, params, &mut sums, true)?;
+                    sums
+                }
+                Planes::Collected(collected) => collected.sums,
+            };
+            (stats.rays, stats.work) = (Some(sums.rays()), Some(sums.work()));
+            stats.work_by_class = Some(sums.work_by_class);
+            stats.failed_tests = (!full).then_some(sums.failed_tests);
         }
+        self.last_frame = Some(LastFrame { keep, planes });
         Ok(Frame { width: options.width, height: options.height, pixels, stats })
     }
 
-    /// An attribute plane (`PLANE_*`) of the last frame, row-major.
+    /// An attribute plane (`PLANE_*`) of the last frame, row-major, one word a sample.
     ///
     /// # Errors
-    /// No frame, or one that kept no attributes; a failing call.
+    /// No frame, or one that did not keep this plane; a failing call.
     pub fn plane(&mut self, plane: u32) -> Result<Vec<u32>> {
-        match self.last_frame {
-            Some((params, keep)) if keep.attributes => self.read_plane(&params, FrameBuffer::Attributes, plane),
-            _ => Err(Error::option("layer", "the last frame kept no attributes")),
-        }
+        self.kept_plane(plane, "attributes")
     }
 
-    /// A counter plane (`COUNTER_*`) of the last frame, row-major.
+    /// A counter plane (`COUNTER_*`) of the last frame, row-major, one word a sample.
     ///
     /// # Errors
-    /// No frame, or one that kept no counters; a failing call.
+    /// No frame, or one that did not keep this counter; a failing call.
     pub fn counter_plane(&mut self, plane: u32) -> Result<Vec<u32>> {
-        match self.last_frame {
-            Some((params, keep)) if keep.counters => self.read_plane(&params, FrameBuffer::Counters, plane),
-            _ => Err(Error::option("layer", "the last frame kept no counters")),
-        }
+        self.kept_plane(PLANE_COUNT + plane, "counters")
     }
 
-    fn read_plane(&mut self, params: &FrameParams, buffer: FrameBuffer, plane: u32) -> Result<Vec<u32>> {
-        let pitch = params.plane_pitch as usize;
-        let start = plane as usize * pitch;
-        let words = self.device.backend().read(buffer, start..start + pitch)?;
-        let pixels = (0..params.height).flat_map(|y| (0..params.width).map(move |x| (x, y)));
-        Ok(pixels.map(|(x, y)| words[plane_index(params, x, y) as usize]).collect())
-    }
-
-    fn count_work(&mut self, params: &FrameParams) -> Result<(RayCounts, WorkCounts)> {
-        let mut sums = [0u64; COUNTER_COUNT as usize];
-        for (plane, sum) in sums.iter_mut().enumerate() {
-            let values = self.read_plane(params, FrameBuffer::Counters, plane as u32)?;
-            *sum = values.iter().map(|&v| u64::from(v)).sum();
-        }
-        let primary = match self.last_frame {
-            Some((p, _)) if p.block > 1 => {
-                let classes = self.read_plane(params, FrameBuffer::Attributes, PLANE_CLASS)?;
-                classes.iter().filter(|&&c| c & CLASS_MASK != CLASS_INTERPOLATED).count() as u64
+    fn kept_plane(&mut self, plane: u32, what: &str) -> Result<Vec<u32>> {
+        let missing = || Error::option("layer", format!("the last frame did not keep these {what}"));
+        let last = self.last_frame.as_ref().filter(|last| last.keep.has(plane)).ok_or_else(missing)?;
+        match &last.planes {
+            Planes::OnDevice(params) => {
+                let words = bands::read_plane(self.device.backend(), params, plane)?;
+                let pixels = (0..params.height).flat_map(|y| (0..params.width).map(move |x| (x, y)));
+                Ok(pixels.map(|(x, y)| words[plane_index(params, x, y) as usize]).collect())
             }
-            _ => u64::from(params.width) * u64::from(params.height),
-        };
-        let rays = RayCounts {
-            primary,
-            shadow: sums[COUNTER_SHADOW_RAYS as usize],
-            reflection: sums[COUNTER_REFLECTION_RAYS as usize],
-            refraction: sums[COUNTER_REFRACTION_RAYS as usize],
-        };
-        let work = WorkCounts {
-            traversal_steps: sums[COUNTER_TRAVERSAL_STEPS as usize],
-            triangle_tests: sums[COUNTER_TRIANGLE_TESTS as usize],
-            shaded_pixels: sums[COUNTER_SHADED as usize],
-        };
-        Ok((rays, work))
-    }
-
-    fn count_failed_tests(&mut self, params: &FrameParams) -> Result<[u64; 7]> {
-        let classes = self.read_plane(params, FrameBuffer::Attributes, PLANE_CLASS)?;
-        Ok(Test::ALL.map(|test| classes.iter().filter(|&&c| c & test.fail_bit() != 0).count() as u64))
-    }
-
-    fn buffer_sizes(&mut self, params: &FrameParams, keep: Keep) -> Result<BufferSizes> {
-        let scan_group = self.device.backend().scan_group();
-        let what = || format!("a frame of {}x{}", params.width, params.height);
-        let sizes = BufferSizes::new(params, keep.attributes, keep.counters, scan_group);
-        let sizes = sizes.ok_or_else(|| Error::LimitExceeded {
-            what: what(),
-            limit: "address space".into(),
-            wanted: format!("buffers of {} planes of {} pixels", PLANE_COUNT, params.plane_pitch),
-            allowed: format!("{} bytes", usize::MAX),
-            remedy: "choose a smaller --size".into(),
-        })?;
-        // Without a budget only a sanity limit holds: no frame may take more than this.
-        let budget = self.memory_budget_bytes.unwrap_or(DEFAULT_BUDGET_BYTES).min(usize::MAX as u64 / 2);
-        let wanted = sizes.bytes() + self.buffers.bytes();
-        if wanted > budget {
-            return Err(Error::LimitExceeded {
-                what: what(),
-                limit: "--memory-budget".into(),
-                wanted: format!("{} MiB", wanted.div_ceil(1 << 20)),
-                allowed: format!("{} MiB", budget >> 20),
-                remedy: "choose a smaller --size or a larger --memory-budget".into(),
-            });
+            Planes::Collected(collected) => collected.planes.get(&plane).cloned().ok_or_else(missing),
         }
-        Ok(sizes)
+    }
+
+    /// What the device, its profile and the budget leave for a frame's buffers.
+    fn room(&mut self, attributes: bool, counters: bool) -> Room {
+        let backend = self.device.backend();
+        let limits = backend.memory_limits();
+        let scene_bytes = self.buffers.bytes() + SMALL_BUFFERS_BYTES;
+        let budget = self.memory_budget_bytes.unwrap_or(DEFAULT_BUDGET_BYTES).min(usize::MAX as u64 / 2);
+        Room {
+            total_bytes: budget.min(limits.total_bytes).saturating_sub(scene_bytes),
+            allocation_bytes: limits.allocation_bytes,
+            scene_bytes,
+            attributes,
+            counters,
+            scan_group: backend.scan_group(),
+        }
     }
 
     /// The scene's name.
@@ -339,6 +322,8 @@ impl Renderer {
     }
 }
 
+/// What small buffers beside the scene's arrays and the frame's may take, such as the frame's parameters.
+const SMALL_BUFFERS_BYTES: u64 = 64 << 10;
 /// Most device memory of a frame and its scene where nobody says otherwise, in bytes.
 pub const DEFAULT_BUDGET_BYTES: u64 = 4 << 30;
 

@@ -62,7 +62,7 @@ fn head(renderer: &mut Renderer, options: &RenderOptions, load_ms: f64) -> Map<S
         ("triangles", json!(renderer.triangle_count())),
         ("width", json!(options.width)),
         ("height", json!(options.height)),
-        ("samples_per_axis", json!(1)),
+        ("samples_per_axis", json!(options.samples)),
         ("block", json!(options.block)),
         (
             "device",

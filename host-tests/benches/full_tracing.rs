@@ -121,7 +121,7 @@ fn measure(anchor: &Path, scene: &Path, name: &str, rounds: usize) -> BenchResul
     };
     let mut renderer = Renderer::new(rarefy::scene::load(scene, &|_, _| {})?, &options, &|_, _| {})?;
     let frame = RenderOptions { width: SIZE, height: SIZE, mode: Mode::Full, ..RenderOptions::default() };
-    let counted = renderer.render_exactly(&frame, Keep { counters: true, ..Keep::default() })?;
+    let counted = renderer.render_exactly(&frame, Keep::COUNTERS)?;
     let rays = counted.stats.rays.ok_or("a counted frame without ray counts")?;
     let ours = [rays.primary, rays.shadow, rays.reflection + rays.refraction];
     renderer.render_exactly(&frame, Keep::default())?; // builds the timed program

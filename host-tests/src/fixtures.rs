@@ -255,7 +255,7 @@ pub fn options(mode: Mode, width: u32, height: u32, block: u32) -> RenderOptions
 
 /// Draws a frame without the fall-back and keeps its attributes. Returns picture and statistics.
 pub fn draw(renderer: &mut Renderer, options: &RenderOptions) -> rarefy::frame::Frame {
-    renderer.render_exactly(options, Keep { attributes: true, counters: false }).unwrap()
+    renderer.render_exactly(options, Keep::EVERYTHING).unwrap()
 }
 
 /// Random numbers that are the same everywhere (xorshift).

@@ -7,8 +7,10 @@ use rarefy::Scene;
 use rarefy::backend::opencl::OpenClBackend;
 use rarefy::backend::twin::TwinBackend;
 use rarefy::backend::{Backend, BufferSizes, FrameBuffer};
+use rarefy::bands::{self, Plan, Room};
 use rarefy::builtin;
 use rarefy::camera::frame_params;
+use rarefy::frame::Keep;
 use rarefy::kdtree::{BuildOptions, KdTree};
 use rarefy::layout::*;
 use rarefy::opencl::{OpenOptions, open_with};
@@ -76,6 +78,9 @@ impl Prepared {
         let block = if full { 1 } else { options.block };
         let (width, height) = (options.width, options.height);
         let frame = frame_params(&self.scene.view, &self.buffers, width, height, block, options.depth);
+        if options.band_rows.is_some() {
+            return self.draw_in_bands(backend, &frame, options, counters);
+        }
         let sizes = BufferSizes::new(&frame, true, counters, backend.scan_group()).unwrap();
         backend.begin(&frame, &sizes)?;
         let counts = if full {
@@ -89,6 +94,27 @@ impl Prepared {
         let classes = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
         let classes = classes.map(|(x, y)| planes[at(x, y) as usize]).collect();
         Ok(Drawn { pixels, classes, counts })
+    }
+
+    fn draw_in_bands(
+        &self,
+        backend: &mut dyn Backend,
+        frame: &FrameParams,
+        options: &RenderOptions,
+        counters: bool,
+    ) -> rarefy::Result<Drawn> {
+        let room = Room {
+            total_bytes: u64::MAX,
+            allocation_bytes: u64::MAX,
+            scene_bytes: 0,
+            attributes: true,
+            counters,
+            scan_group: backend.scan_group(),
+        };
+        let plan = Plan::new(frame, &room, options.band_rows)?;
+        let keep = Keep::planes(&[PLANE_CLASS]).and(if counters { Keep::COUNTERS } else { Keep::default() });
+        let (counts, collected) = bands::draw(backend, &plan, options, self.scene.view.extent, keep)?;
+        Ok(Drawn { pixels: collected.colors, classes: collected.planes[&PLANE_CLASS].clone(), counts })
     }
 }
 

@@ -42,7 +42,7 @@ fn layers_are_what_they_were() {
         let options = RendererOptions { device: DeviceChoice::Cpu, ..RendererOptions::default() };
         let mut renderer = Renderer::new(builtin::to_scene(name).unwrap(), &options, &|_, _| ()).unwrap();
         let options = RenderOptions { width: WIDTH, height: HEIGHT, mode: Mode::Adaptive, ..RenderOptions::default() };
-        let frame = renderer.render_exactly(&options, Keep { attributes: true, counters: true }).unwrap();
+        let frame = renderer.render_exactly(&options, Keep::EVERYTHING).unwrap();
         for layer in LAYERS {
             let drawn = layers::draw(Layer::from_name(layer).unwrap(), &mut renderer, &frame).unwrap();
             let path = golden(name, layer);

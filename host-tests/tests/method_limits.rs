@@ -6,6 +6,7 @@
 use glam::{DVec3, Vec2, Vec3};
 use rarefy::builtin;
 use rarefy::layout::*;
+use rarefy::math::{unpack_normal, unpack_texcoord};
 use rarefy::options::{Correction, CorrectionMethod, Interpolation, Mode, RenderOptions, Tolerances};
 use rarefy::scene::{Material, Scene};
 use rarefy_host_tests::fixtures::*;
@@ -131,6 +132,12 @@ fn differences_from_means(scene: &Scene, options: &RenderOptions, weight: fn(f64
     let camera = scene.view.camera;
     let (eye, forward) = (camera.eye.as_dvec3(), (camera.look_at - camera.eye).as_dvec3().normalize());
     let value = |plane: u32, at: usize| f64::from(f32::from_bits(planes[plane as usize][at]));
+    let normal = |at: usize| unpack_normal(planes[PLANE_NORMAL as usize][at]).as_dvec3();
+    let texcoord = |at: usize| {
+        let word = planes[PLANE_TEXCOORD as usize][at];
+        let [s, t] = [word & 0xffff, word >> 16].map(|half| f64::from(unpack_texcoord(half)));
+        DVec3::new(s, t, 0.0)
+    };
     let vector = |plane: u32, at: usize| DVec3::new(value(plane, at), value(plane + 1, at), value(plane + 2, at));
     let mut worst = [0f64; 4];
     let size = (options.width, options.height);
@@ -147,13 +154,11 @@ fn differences_from_means(scene: &Scene, options: &RenderOptions, weight: fn(f64
         let depth = |at| (vector(PLANE_POSITION_X, at) - eye).dot(forward);
         let wa = weight(depth(a), depth(b));
         let mean = |plane| vector(plane, a) * wa + vector(plane, b) * (1.0 - wa);
-        let mean_of_one = |plane| value(plane, a) * wa + value(plane, b) * (1.0 - wa);
-        let st = |s: f64, t: f64| DVec3::new(s, t, 0.0);
+        let mean_of = |[first, second]: [DVec3; 2]| first * wa + second * (1.0 - wa);
         let found = [
             vector(PLANE_POSITION_X, at).distance(mean(PLANE_POSITION_X)),
-            vector(PLANE_NORMAL_X, at).distance(mean(PLANE_NORMAL_X).normalize()),
-            st(value(PLANE_TEXCOORD_S, at), value(PLANE_TEXCOORD_T, at))
-                .distance(st(mean_of_one(PLANE_TEXCOORD_S), mean_of_one(PLANE_TEXCOORD_T))),
+            normal(at).distance(mean_of([a, b].map(normal)).normalize()),
+            texcoord(at).distance(mean_of([a, b].map(texcoord))),
             vector(PLANE_GCOL_R, at).distance(mean(PLANE_GCOL_R)),
         ];
         (0..4).for_each(|k| worst[k] = worst[k].max(found[k]));
@@ -174,7 +179,10 @@ fn interpolated_pixels_hold_the_means_of_their_references() {
                 differences_from_means(&scene, &options, perspective),
                 differences_from_means(&scene, &plain, |_, _| 0.5),
             ] {
-                assert!(worst.iter().all(|&w| w < 5e-6), "{name}, blocks of {block}: {worst:?}");
+                // Normals and texture coordinates are stored in 16 bits for each coordinate.
+                let rounding = [5e-6, 1e-4, 1.5e-5, 5e-6];
+                let within = worst.iter().zip(rounding).all(|(&w, most)| w < most);
+                assert!(within, "{name}, blocks of {block}: {worst:?}");
             }
             // Negative controls: the first reference alone, and the other weights.
             let first = differences_from_means(&scene, &plain, |_, _| 1.0);
@@ -202,7 +210,10 @@ fn interpolation_errors(block: u32, interpolation: Interpolation) -> [f64; 2] {
     assert!(interpolated > u64::from(W * H) * 7 / 10, "only {interpolated} pixels are interpolated");
     let mut plane =
         |p| renderer.plane(p).unwrap().into_iter().map(|w| f64::from(f32::from_bits(w))).collect::<Vec<_>>();
-    let [x, z, s, t] = [PLANE_POSITION_X, PLANE_POSITION_Z, PLANE_TEXCOORD_S, PLANE_TEXCOORD_T].map(&mut plane);
+    let [x, z] = [PLANE_POSITION_X, PLANE_POSITION_Z].map(&mut plane);
+    let texcoords = renderer.plane(PLANE_TEXCOORD).unwrap();
+    let coordinates = |half: fn(u32) -> u32| texcoords.iter().map(move |&word| f64::from(unpack_texcoord(half(word))));
+    let (s, t): (Vec<f64>, Vec<f64>) = (coordinates(|w| w & 0xffff).collect(), coordinates(|w| w >> 16).collect());
     let mut errors = [0f64; 2];
     for at in 0..(W * H) as usize {
         let d = eye.direction((at as u32 % W, at as u32 / W));
@@ -217,10 +228,11 @@ fn interpolation_errors(block: u32, interpolation: Interpolation) -> [f64; 2] {
 #[test]
 fn perspective_interpolation_is_exact_on_planes_and_plain_interpolation_is_not() {
     for block in [2, 4] {
+        // Texture coordinates are stored in 16 bits: each level of references adds half a step.
         let [position, texcoord] = interpolation_errors(block, Interpolation::Perspective);
-        assert!(position < 2e-6 && texcoord < 1e-6, "blocks of {block}: {position}, {texcoord}");
+        assert!(position < 2e-6 && texcoord < 2.5e-5, "blocks of {block}: {position}, {texcoord}");
         let [position, texcoord] = interpolation_errors(block, Interpolation::Plain);
-        assert!(position > 1e-4 && texcoord > 1e-6, "blocks of {block}: plain is as good: {position}, {texcoord}");
+        assert!(position > 1e-4 && texcoord > 1e-4, "blocks of {block}: plain is as good: {position}, {texcoord}");
     }
 }
 

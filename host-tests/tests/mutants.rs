@@ -28,6 +28,8 @@ enum Shot {
     Rods,
     /// [`Shot::Rods`], corrected by sweeps.
     RodsSwept,
+    /// [`Shot::Rods`], drawn in bands.
+    RodsInBands,
     /// Large enough for scans of two levels.
     Large,
     /// [`Shot::Zoo`] with the strictest tolerances.
@@ -39,7 +41,7 @@ impl Shot {
         match self {
             Shot::Zoo | Shot::Strictest => "zoo",
             Shot::Room => "mirror-room",
-            Shot::Rods | Shot::RodsSwept | Shot::Large => "rods",
+            Shot::Rods | Shot::RodsSwept | Shot::RodsInBands | Shot::Large => "rods",
         }
     }
 
@@ -47,11 +49,14 @@ impl Shot {
         let mut options = RenderOptions { width: 50, height: 38, ..RenderOptions::default() };
         match self {
             Shot::Large => (options.width, options.height) = (210, 150),
-            Shot::Rods | Shot::RodsSwept => (options.width, options.height) = (100, 75),
+            Shot::Rods | Shot::RodsSwept | Shot::RodsInBands => (options.width, options.height) = (100, 75),
             Shot::Strictest => options.tolerances.t_pos = 0.0,
             // Large enough that smooth glass, slopes and faint shadows are interpolated too.
             Shot::Zoo => (options.width, options.height, options.depth) = (180, 136, 3),
             Shot::Room => {}
+        }
+        if self == Shot::RodsInBands {
+            options.band_rows = Some(8);
         }
         if self == Shot::RodsSwept {
             options.correction_method = CorrectionMethod::Sweeps;
@@ -105,8 +110,13 @@ const CORRECTION: &[Mutant] = &[
     ("common/attributes.clh", "(step->flags & STEP_COMPARE_SHADOW)", "(step->flags & STEP_GCOL_LINEAR)", Shot::Rods, Kernel::Step4Mark),
     ("step4.cl", "case 0u: return x > 0u ?", "case 0u: return x > 25u ?", Shot::Rods, Kernel::Step4Mark),
     ("step4.cl", "case 1u: return x + 1u < frame->width ?", "case 1u: return x + 25u < frame->width ?", Shot::Rods, Kernel::Step4Mark),
-    ("step4.cl", "case 2u: return y > 0u ?", "case 2u: return y > 19u ?", Shot::Rods, Kernel::Step4Mark),
-    ("step4.cl", "default: return y + 1u < frame->height ?", "default: return y + 19u < frame->height ?", Shot::Rods, Kernel::Step4Mark),
+    ("step4.cl", "case 2u: return y > frame->window_begin ?", "case 2u: return y > frame->window_begin + 19u ?", Shot::Rods, Kernel::Step4Mark),
+    ("step4.cl", "default: return y + 1u < frame->window_end ?", "default: return y + 19u < frame->window_end ?", Shot::Rods, Kernel::Step4Mark),
+    ("step4.cl", "(step.flags & STEP_SETTLE) ||", "", Shot::RodsInBands, Kernel::Step4Trace),
+    ("step4.cl", "y >= frame->interior_end", "y > frame->interior_end", Shot::RodsInBands, Kernel::Step4Trace),
+    ("step4.cl", "y < frame->interior_begin", "y + 1u < frame->interior_begin", Shot::RodsInBands, Kernel::Step4Trace),
+    ("common/attributes.clh", "(y - frame->window_begin) >> shift", "y >> shift", Shot::RodsInBands, Kernel::Step4Count),
+    ("common/attributes.clh", "(y - frame->window_begin) * frame->width", "y * frame->width", Shot::RodsInBands, Kernel::Step1),
     ("step4.cl", "attributes[PLANE_CLAIM * pitch + to] == i", "attributes[PLANE_CLAIM * pitch + to] != i", Shot::Rods, Kernel::Step4Count),
     ("common/trace.clh", "? CLASS_CORRECTED : CLASS_CONFIRMED", "? CLASS_CORRECTED : CLASS_CORRECTED", Shot::Rods, Kernel::Step4Trace),
     ("common/trace.clh", "out_attributes[PLANE_CLAIM * pitch + at] = NO_CLAIM", "out_attributes[PLANE_CLAIM * pitch + at] = 0u", Shot::Rods, Kernel::Step4Trace),
@@ -136,7 +146,7 @@ const TRAVERSAL: &[Mutant] = &[
 const RAY_TREE: &[Mutant] = &[
     ("common/attributes.clh", "((float)(2u * y + 1u))", "((float)(2u * y))", Shot::Zoo, Kernel::Step1),
     ("common/attributes.clh", "((y & mask) << shift) + (x & mask)", "((x & mask) << shift) + (y & mask)", Shot::Zoo, Kernel::Step2c),
-    ("common/attributes.clh", "= as_uint(a->normal.y)", "= as_uint(a->normal.x)", Shot::Zoo, Kernel::Step3c),
+    ("common/attributes.clh", "= pack_normal(a->normal)", "= pack_normal(-a->normal)", Shot::Zoo, Kernel::Step3c),
     ("common/trace.clh", "dot3(g, d) > 0.0f ? -g : g", "g", Shot::Zoo, Kernel::Step1),
     ("common/trace.clh", "dot3(unit, p.geometric_normal) < 0.0f ? -unit : unit", "unit", Shot::Zoo, Kernel::Step1),
     ("common/trace.clh", "float3 o = p->position + p->geometric_normal * frame->epsilon", "float3 o = p->position", Shot::Room, Kernel::Step1),
@@ -176,6 +186,9 @@ const SHADING: &[Mutant] = &[
     ("common/math.clh", "0x3f3504f3u", "0x3f800000u", Shot::Zoo, Kernel::Step1),
     ("common/math.clh", "f * (0.6931472f +", "f * (0.6f +", Shot::Zoo, Kernel::Step1),
     ("common/math.clh", "x >= 0.0f ? x - fold : x + fold", "x + fold", Shot::Zoo, Kernel::Step1),
+    ("common/math.clh", "x = x >= 0.0f ? 1.0f - ay : ay - 1.0f", "x = 1.0f - ay", Shot::Zoo, Kernel::Step1),
+    ("common/math.clh", "round(y * 32767.0f)", "floor(y * 32767.0f)", Shot::Zoo, Kernel::Step1),
+    ("common/math.clh", "(uint)(t * 65536.0f) << 16", "(uint)(s * 65536.0f) << 16", Shot::Room, Kernel::Step1),
     ("common/math.clh", "f = x - floor(x)", "f = ceil(x) - x", Shot::Zoo, Kernel::Step1),
 ];
 
@@ -200,7 +213,7 @@ const SIMILARITY: &[Mutant] = &[
     ("common/similarity.clh", "m.gcol = a->gcol * wa + b->gcol * wb", "m.gcol = a->gcol", Shot::Zoo, Kernel::Step3a),
     ("common/similarity.clh", "x + step->reference_dx >= frame->width", "x + step->reference_dx > frame->width", Shot::Zoo, Kernel::Step2a),
     ("common/similarity.clh", "attributes[PLANE_CLAIM * pitch + at] = NO_CLAIM", "attributes[PLANE_CLAIM * pitch + at] = 0u", Shot::Zoo, Kernel::Step3a),
-    ("common/attributes.clh", "a.s = as_float(attributes[PLANE_TEXCOORD_S", "a.s = as_float(attributes[PLANE_TEXCOORD_T", Shot::Room, Kernel::Step2a),
+    ("common/attributes.clh", "a.s = unpack_texcoord(texcoord & 0xffffu)", "a.s = unpack_texcoord(texcoord >> 16)", Shot::Room, Kernel::Step2a),
 ];
 
 /// Packing.

@@ -30,6 +30,11 @@ fn features() -> Vec<(String, RenderOptions, Keep)> {
             RenderOptions { width: WIDTH, height: HEIGHT, ..RenderOptions::paper() },
             Keep::default(),
         ),
+        (
+            "4 samples an axis".into(),
+            RenderOptions { samples: 4, width: 31, height: 23, ..base.clone() },
+            Keep::default(),
+        ),
         ("one pixel".into(), RenderOptions { width: 1, height: 1, ..base.clone() }, Keep::default()),
     ];
     for block in [2, 4] {
@@ -43,7 +48,7 @@ fn features() -> Vec<(String, RenderOptions, Keep)> {
             }
         }
     }
-    let keep = Keep { attributes: true, counters: true };
+    let keep = Keep::EVERYTHING;
     for mode in [Mode::Full, Mode::Adaptive] {
         features.push((format!("layers and counters, {mode:?}"), RenderOptions { mode, ..base.clone() }, keep));
     }
@@ -95,6 +100,6 @@ fn every_feature_runs_under_every_profile() {
     }
     // The comparison can fail: one bit of one picture.
     let mut changed = free.clone();
-    changed[3].1[0][0] ^= 1;
+    changed[4].1[0][0] ^= 1;
     assert_eq!(different(&free, &changed), ["one pixel"]);
 }

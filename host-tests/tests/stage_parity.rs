@@ -8,7 +8,7 @@ use std::path::Path;
 use rarefy::Scene;
 use rarefy::backend::parity::{KernelParity, ParityBackend};
 use rarefy::backend::twin::TwinBackend;
-use rarefy::backend::{Backend, BackendInfo, BufferSizes, FrameBuffer};
+use rarefy::backend::{Backend, BackendInfo, BufferSizes, FrameBuffer, MemoryLimits};
 use rarefy::builtin;
 use rarefy::layout::{FrameParams, StepParams, expected_probe};
 use rarefy::opencl::{OpenOptions, Profile};
@@ -311,6 +311,10 @@ impl Backend for Tampered {
     fn scan_group(&self) -> u32 {
         self.inner.scan_group()
     }
+    fn memory_limits(&self) -> MemoryLimits {
+        self.inner.memory_limits()
+    }
+
     fn begin(&mut self, frame: &FrameParams, sizes: &BufferSizes) -> rarefy::Result<()> {
         self.inner.begin(frame, sizes)
     }

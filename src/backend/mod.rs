@@ -40,14 +40,14 @@ pub struct BufferSizes {
 }
 
 impl BufferSizes {
-    /// Sizes for a frame; `attributes` and `counters` say which planes it keeps. `None` if they overflow `usize`.
+    /// Sizes for a frame's window; `attributes` and `counters` say which planes it keeps. `None` if they overflow `usize`.
     pub fn new(frame: &FrameParams, attributes: bool, counters: bool, scan_group: u32) -> Option<Self> {
         let words = |n: u64| usize::try_from(n).ok().filter(|&n| n < usize::MAX / 8);
         let pitch = u64::from(frame.plane_pitch);
-        let pixels = u64::from(frame.width) * u64::from(frame.height);
+        let rows = frame.window_end - frame.window_begin;
+        let pixels = u64::from(frame.width) * u64::from(rows);
         // step4 looks in four directions from every listed pixel; border tiles of a grid are padded.
-        let items =
-            if attributes { (4 * pixels).max(pixels + 64 * u64::from(frame.width + frame.height + 64)) } else { 0 };
+        let items = if attributes { (4 * pixels).max(pixels + 64 * u64::from(frame.width + rows + 64)) } else { 0 };
         let masks = items.div_ceil(32).max(1);
         let (mut sums, mut level) = (masks, masks);
         while level > 1 {
@@ -64,13 +64,28 @@ impl BufferSizes {
         })
     }
 
+    /// The largest of them, in bytes.
+    pub fn largest_bytes(&self) -> u64 {
+        self.each().into_iter().map(|words| 4 * words as u64).max().unwrap_or(0)
+    }
+
+    fn each(&self) -> [usize; 6] {
+        [self.attributes, self.counters, self.color, self.list, self.masks, self.sums]
+    }
+
     /// All of them together, in bytes.
     pub fn bytes(&self) -> u64 {
-        [self.attributes, self.counters, self.color, self.list, self.masks, self.sums]
-            .iter()
-            .map(|&words| 4 * words as u64)
-            .sum()
+        self.each().into_iter().map(|words| 4 * words as u64).sum()
     }
+}
+
+/// How much memory a back end has for a frame, in bytes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct MemoryLimits {
+    /// All buffers together, the scene's included.
+    pub total_bytes: u64,
+    /// The largest single buffer.
+    pub allocation_bytes: u64,
 }
 
 /// A place where kernels run. Launches happen in order; reads wait for them.
@@ -81,7 +96,10 @@ pub trait Backend {
     /// Work-items of a scan's work-group: a power of two.
     fn scan_group(&self) -> u32;
 
-    /// Makes ready for a frame: buffers of these sizes and the frame's parameters.
+    /// What its memory holds, the profile's limits included.
+    fn memory_limits(&self) -> MemoryLimits;
+
+    /// Makes ready for a frame or a window of it: buffers of these sizes and the parameters.
     ///
     /// # Errors
     /// A limit of the device or its profile, or a failing call.

@@ -4,7 +4,7 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use super::{Backend, BackendInfo, BufferSizes, FrameBuffer};
+use super::{Backend, BackendInfo, BufferSizes, FrameBuffer, MemoryLimits};
 use crate::error::Result;
 use crate::kernels::{self, Mutation};
 use crate::layout::{self, BuildFlavour, FrameParams, StepParams};
@@ -227,6 +227,11 @@ impl Backend for OpenClBackend {
 
     fn scan_group(&self) -> u32 {
         self.scan_group
+    }
+
+    fn memory_limits(&self) -> MemoryLimits {
+        let limits = self.door.limits();
+        MemoryLimits { total_bytes: limits.global_mem_bytes, allocation_bytes: limits.max_mem_alloc_bytes }
     }
 
     fn begin(&mut self, frame: &FrameParams, sizes: &BufferSizes) -> Result<()> {

@@ -3,7 +3,7 @@
 //! buffers word by word. The pipeline drives it like any other.
 
 use super::twin::TwinBackend;
-use super::{Backend, BackendInfo, BufferSizes, FrameBuffer};
+use super::{Backend, BackendInfo, BufferSizes, FrameBuffer, MemoryLimits};
 use crate::error::Result;
 use crate::layout::{FrameParams, PLANE_GCOL_B, StepParams};
 use crate::stage::{Kernel, Stage};
@@ -93,6 +93,10 @@ impl Backend for ParityBackend<'_> {
 
     fn scan_group(&self) -> u32 {
         self.device.scan_group()
+    }
+
+    fn memory_limits(&self) -> MemoryLimits {
+        self.device.memory_limits()
     }
 
     fn begin(&mut self, frame: &FrameParams, sizes: &BufferSizes) -> Result<()> {

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use super::{Backend, BackendInfo, BufferSizes, FrameBuffer};
+use super::{Backend, BackendInfo, BufferSizes, FrameBuffer, MemoryLimits};
 use crate::error::Result;
 use crate::layout::{FrameParams, StepParams};
 use crate::scene_buffers::{SceneBuffers, Shading};
@@ -77,6 +77,10 @@ impl Backend for TwinBackend {
 
     fn scan_group(&self) -> u32 {
         256
+    }
+
+    fn memory_limits(&self) -> MemoryLimits {
+        MemoryLimits { total_bytes: u64::MAX, allocation_bytes: u64::MAX }
     }
 
     fn begin(&mut self, frame: &FrameParams, sizes: &BufferSizes) -> Result<()> {

@@ -150,7 +150,7 @@ pub struct DrawArgs {
     /// Size of the picture in pixels.
     #[arg(long, value_parser = parse_size, default_value = "1024x1024", allow_hyphen_values = true)]
     pub size: Size,
-    /// Samples per pixel and axis.
+    /// Samples per pixel and axis: 1, 2 or 4.
     #[arg(long, default_value_t = 1)]
     pub samples: u32,
     /// Side of the base blocks: 2, or 4 for two levels.
@@ -245,9 +245,6 @@ impl DrawArgs {
 
     /// The frame's options in `mode`.
     pub fn render_options(&self, mode: Mode) -> Result<RenderOptions> {
-        if self.samples != 1 {
-            return Err(Error::option("--samples", format!("{} is not available; 1 is", self.samples)));
-        }
         let base = match self.rules {
             RulesArg::Ours => RenderOptions::default(),
             RulesArg::Paper => RenderOptions::paper(),
@@ -255,6 +252,7 @@ impl DrawArgs {
         let mut options = RenderOptions {
             width: self.size.width,
             height: self.size.height,
+            samples: self.samples,
             mode,
             block: self.blocks,
             depth: self.depth,

@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use rarefy::compare::{Comparison, compare};
-use rarefy::layers::{self, Layer};
+use rarefy::layers;
 use rarefy::metrics::{CUSTOMARY_GAIN, Rgb8, difference_picture};
 use rarefy::options::{Mode, RenderOptions};
 use rarefy::picture::write_png;
@@ -36,7 +36,7 @@ pub fn run(args: &CompareArgs) -> Result<()> {
         say(json, &line);
     }
     if let Some(folder) = &args.output {
-        for line in write_pictures(folder, &mut renderer, &comparison)? {
+        for line in write_pictures(folder, &options, &comparison)? {
             say(json, &line);
         }
     }
@@ -49,15 +49,20 @@ pub fn run(args: &CompareArgs) -> Result<()> {
 fn table(renderer: &mut Renderer, options: &RenderOptions, c: &Comparison) -> Vec<String> {
     let info = renderer.info();
     let decibel = |v: Option<f64>| v.map_or("equal".to_owned(), |db| format!("{db:.2} dB"));
-    let all = f64::from(options.width) * f64::from(options.height);
+    let (sample_width, sample_height) = options.sample_size();
+    let all = f64::from(sample_width) * f64::from(sample_height);
     let p = &c.adaptive.pixels;
     let mut lines = vec![
         format!(
-            "{}: {} triangles, {}x{}, blocks of {}, on {}",
+            "{}: {} triangles, {}x{}{}, blocks of {}, on {}",
             renderer.name(),
             renderer.triangle_count(),
             options.width,
             options.height,
+            match options.samples {
+                1 => String::new(),
+                samples => format!(" with {samples}x{samples} samples"),
+            },
             options.block,
             info.name
         ),
@@ -95,22 +100,21 @@ fn table(renderer: &mut Renderer, options: &RenderOptions, c: &Comparison) -> Ve
     lines
 }
 
-fn write_pictures(folder: &Path, renderer: &mut Renderer, c: &Comparison) -> Result<Vec<String>> {
+fn write_pictures(folder: &Path, options: &RenderOptions, c: &Comparison) -> Result<Vec<String>> {
     let frame = &c.adaptive_frame;
     let (width, height) = (frame.width, frame.height);
     let reference = Rgb8::new(width, height, &c.full_picture)?;
     let test = Rgb8::new(width, height, &frame.pixels)?;
-    let class = layers::draw(Layer::Class, renderer, frame)?;
-    let fail_mask = layers::draw(Layer::FailMask, renderer, frame)?;
+    let samples = options.sample_size();
     let pictures = [
-        ("full.png", c.full_picture.clone()),
-        ("adaptive.png", frame.pixels.clone()),
-        ("difference.png", difference_picture(reference, test, CUSTOMARY_GAIN)?),
-        ("class.png", class),
-        ("fail-mask.png", fail_mask),
+        ("full.png", (width, height), c.full_picture.clone()),
+        ("adaptive.png", (width, height), frame.pixels.clone()),
+        ("difference.png", (width, height), difference_picture(reference, test, CUSTOMARY_GAIN)?),
+        ("class.png", samples, layers::class_picture(&c.classes)),
+        ("fail-mask.png", samples, layers::fail_mask_picture(&c.classes)),
     ];
     let mut lines = Vec::new();
-    for (name, pixels) in pictures {
+    for (name, (width, height), pixels) in pictures {
         let path = folder.join(name);
         write_png(&path, width, height, &pixels)?;
         lines.push(path.display().to_string());

@@ -26,8 +26,7 @@ pub fn run(args: &RenderArgs) -> Result<()> {
         if mode == Mode::Full && layer.is_adaptive_only() {
             return Err(Error::option("--layer", "full tracing has no such layer; use --mode adaptive"));
         }
-        keep.attributes |= layer.needs().attributes;
-        keep.counters |= layer.needs().counters;
+        keep = keep.and(layer.needs());
         check_writable(path)?;
     }
     check_writable(&args.output)?;
@@ -37,7 +36,8 @@ pub fn run(args: &RenderArgs) -> Result<()> {
     let frame = renderer.render(&options, keep)?;
     write_png(&args.output, frame.width, frame.height, &frame.pixels)?;
     for (layer, path) in &layers {
-        write_png(path, frame.width, frame.height, &layers::draw(*layer, &mut renderer, &frame)?)?;
+        let (width, height) = if *layer == Layer::Color { (frame.width, frame.height) } else { options.sample_size() };
+        write_png(path, width, height, &layers::draw(*layer, &mut renderer, &frame)?)?;
     }
     let json = args.draw.json.as_deref();
     let info = renderer.info();

@@ -10,7 +10,7 @@ use glam::Vec3;
 
 use super::scene_args::{Work, xyz};
 use crate::layout::*;
-use crate::math::{clamp, dot};
+use crate::math::{clamp, dot, pack_normal, pack_texcoord, unpack_normal, unpack_texcoord};
 
 /// A buffer of 32-bit words that items on any thread may read and write.
 #[derive(Debug, Default)]
@@ -93,7 +93,14 @@ pub fn plane_index(frame: &FrameParams, x: u32, y: u32) -> u32 {
     let shift = frame.block >> 1;
     let mask = frame.block - 1;
     let phase = ((y & mask) << shift) + (x & mask);
-    (phase * frame.phase_height + (y >> shift)) * frame.phase_width + (x >> shift)
+    let row = (y - frame.window_begin) >> shift;
+    (phase * frame.phase_height + row) * frame.phase_width + (x >> shift)
+}
+
+/// Where a pixel's colour lies: row-major within the window.
+#[inline]
+pub fn color_index(frame: &FrameParams, x: u32, y: u32) -> u32 {
+    (y - frame.window_begin) * frame.width + x
 }
 
 /// Writes all attributes of the pixel at plane index `at`.
@@ -102,14 +109,11 @@ pub fn store_attributes(planes: &Words, pitch: u32, at: u32, a: &Attributes) {
     put(PLANE_POSITION_X, a.position.x);
     put(PLANE_POSITION_Y, a.position.y);
     put(PLANE_POSITION_Z, a.position.z);
-    put(PLANE_NORMAL_X, a.normal.x);
-    put(PLANE_NORMAL_Y, a.normal.y);
-    put(PLANE_NORMAL_Z, a.normal.z);
-    put(PLANE_TEXCOORD_S, a.s);
-    put(PLANE_TEXCOORD_T, a.t);
     put(PLANE_GCOL_R, a.gcol.x);
     put(PLANE_GCOL_G, a.gcol.y);
     put(PLANE_GCOL_B, a.gcol.z);
+    planes.set(PLANE_NORMAL * pitch + at, pack_normal(a.normal));
+    planes.set(PLANE_TEXCOORD * pitch + at, pack_texcoord(a.s, a.t));
     planes.set(PLANE_OBJECT * pitch + at, a.object);
     planes.set(PLANE_SHADOW * pitch + at, a.shadow_bits);
 }
@@ -117,11 +121,12 @@ pub fn store_attributes(planes: &Words, pitch: u32, at: u32, a: &Attributes) {
 /// Reads all attributes of the pixel at plane index `at`.
 pub fn load_attributes(planes: &Words, pitch: u32, at: u32) -> Attributes {
     let get = |plane: u32| f32::from_bits(planes.get(plane * pitch + at));
+    let texcoord = planes.get(PLANE_TEXCOORD * pitch + at);
     Attributes {
         position: Vec3::new(get(PLANE_POSITION_X), get(PLANE_POSITION_Y), get(PLANE_POSITION_Z)),
-        normal: Vec3::new(get(PLANE_NORMAL_X), get(PLANE_NORMAL_Y), get(PLANE_NORMAL_Z)),
-        s: get(PLANE_TEXCOORD_S),
-        t: get(PLANE_TEXCOORD_T),
+        normal: unpack_normal(planes.get(PLANE_NORMAL * pitch + at)),
+        s: unpack_texcoord(texcoord & 0xffff),
+        t: unpack_texcoord(texcoord >> 16),
         gcol: Vec3::new(get(PLANE_GCOL_R), get(PLANE_GCOL_G), get(PLANE_GCOL_B)),
         object: planes.get(PLANE_OBJECT * pitch + at),
         shadow_bits: planes.get(PLANE_SHADOW * pitch + at),

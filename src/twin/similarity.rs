@@ -3,7 +3,7 @@
 
 use super::FrameBuffers;
 use super::planes::{
-    Attributes, gcol_distance, load_attributes, look_different, plane_index, store_attributes, store_work,
+    Attributes, color_index, gcol_distance, load_attributes, look_different, plane_index, store_attributes, store_work,
 };
 use super::scene_args::{SceneArgs, Work, xyz};
 use super::shade::{ShadePoint, shade_local, srgb_word};
@@ -88,7 +88,7 @@ pub fn check_pixel(scene: &SceneArgs, step: &StepParams, x: u32, y: u32, out: &F
     let a = load_attributes(planes, pitch, plane_index(frame, x - step.reference_dx, y - step.reference_dy));
     let b = load_attributes(planes, pitch, plane_index(frame, x + step.reference_dx, y + step.reference_dy));
     let mask = similarity_checks(scene, step, &a, &b);
-    let color = |x: u32, y: u32| out.color.get(y * frame.width + x);
+    let color = |x: u32, y: u32| out.color.get(color_index(frame, x, y));
     let color_a = color(x - step.reference_dx, y - step.reference_dy);
     let color_b = color(x + step.reference_dx, y + step.reference_dy);
     if mask != 0 && (mask & !step.lenient_tests != 0 || look_different(color_a, color_b, step.t_visible)) {
@@ -112,5 +112,5 @@ pub fn check_pixel(scene: &SceneArgs, step: &StepParams, x: u32, y: u32, out: &F
         color = shade_local(scene, &point, normalize(xyz(frame.eye) - m.position)) + m.gcol;
     }
     store_work(&out.counters, pitch, at, &Work { shaded: 1, ..Work::default() });
-    out.color.set(y * frame.width + x, srgb_word(scene.tables, color));
+    out.color.set(color_index(frame, x, y), srgb_word(scene.tables, color));
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Twin of `kernels/step4.cl`: post-correction.
 
-use super::planes::{hits_differ, load_attributes, plane_index};
+use super::planes::{color_index, hits_differ, load_attributes, plane_index};
 use super::trace::trace_pixel;
 use super::{FrameBuffers, SceneArgs, pack};
 use crate::layout::*;
@@ -24,7 +24,7 @@ fn spreads(
         return false;
     }
     let (a, b) = (load_attributes(planes, pitch, at), load_attributes(planes, pitch, to));
-    let color = |x: u32, y: u32| buffers.color.get(y * frame.width + x);
+    let color = |x: u32, y: u32| buffers.color.get(color_index(frame, x, y));
     hits_differ(step, &a, &b, color(x, y), color(nx, ny))
 }
 
@@ -34,8 +34,8 @@ fn neighbour(frame: &FrameParams, step: &StepParams, buffers: &FrameBuffers, i: 
     let (exists, pixel) = match i & 3 {
         0 => (x > 0, source.wrapping_sub(1)),
         1 => (x + 1 < frame.width, source.wrapping_add(1)),
-        2 => (y > 0, source.wrapping_sub(0x10000)),
-        _ => (y + 1 < frame.height, source.wrapping_add(0x10000)),
+        2 => (y > frame.window_begin, source.wrapping_sub(0x10000)),
+        _ => (y + 1 < frame.window_end, source.wrapping_add(0x10000)),
     };
     if exists { pixel } else { NO_PIXEL }
 }
@@ -96,7 +96,14 @@ pub fn step4_trace(scene: &SceneArgs, step: &StepParams, item: u32, buffers: &Fr
         return;
     }
     let pixel = buffers.list.get(step.list_offset + item);
-    trace_pixel(scene, pixel & 0xffff, pixel >> 16, CLASS_CORRECTED, step, buffers);
+    let (x, y) = (pixel & 0xffff, pixel >> 16);
+    let frame = scene.frame;
+    if step.flags & STEP_SETTLE != 0 || y < frame.interior_begin || y >= frame.interior_end {
+        let at = PLANE_CLASS * frame.plane_pitch + pixel_plane_index(frame, pixel);
+        buffers.attributes.set(at, buffers.attributes.get(at) & !CLASS_MASK | CLASS_CONFIRMED);
+        return;
+    }
+    trace_pixel(scene, x, y, CLASS_CORRECTED, step, buffers);
 }
 
 /// One work-item of `step4_sweep`.

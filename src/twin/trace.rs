@@ -5,7 +5,7 @@ use glam::Vec3;
 
 use super::FrameBuffers;
 use super::planes::{
-    Attributes, hits_differ, load_attributes, pixel_direction, plane_index, store_attributes, store_work,
+    Attributes, color_index, hits_differ, load_attributes, pixel_direction, plane_index, store_attributes, store_work,
 };
 use super::scene_args::{SceneArgs, Work, xyz};
 use super::shade::{ShadePoint, shade_local, srgb_word};
@@ -229,7 +229,7 @@ pub fn trace_pixel(scene: &SceneArgs, x: u32, y: u32, pixel_class: u32, step: &S
         let mut new_class = pixel_class;
         if pixel_class == CLASS_CORRECTED {
             let before = load_attributes(planes, pitch, at);
-            new_class = if hits_differ(step, &a, &before, out.color.get(y * frame.width + x), word) {
+            new_class = if hits_differ(step, &a, &before, out.color.get(color_index(frame, x, y)), word) {
                 CLASS_CORRECTED
             } else {
                 CLASS_CONFIRMED
@@ -241,5 +241,5 @@ pub fn trace_pixel(scene: &SceneArgs, x: u32, y: u32, pixel_class: u32, step: &S
         planes.set(PLANE_CLAIM * pitch + at, NO_CLAIM);
     }
     store_work(&out.counters, frame.plane_pitch, at, &work);
-    out.color.set(y * frame.width + x, word);
+    out.color.set(color_index(frame, x, y), word);
 }

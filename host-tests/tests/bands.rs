@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Frames drawn in bands equal frames drawn at once, byte for byte, whatever the height of the bands.
+#![allow(clippy::unwrap_used, missing_docs)]
+
+use glam::{DVec3, Vec3};
+use rarefy::Error;
+use rarefy::builtin;
+use rarefy::frame::Frame;
+use rarefy::layout::*;
+use rarefy::options::{Correction, CorrectionMethod, Mode, RenderOptions};
+use rarefy::renderer::{DeviceChoice, Keep, Renderer, RendererOptions};
+use rarefy::scene::Scene;
+use rarefy_host_tests::fixtures::*;
+use rarefy_host_tests::frames::no_opencl;
+use rarefy_host_tests::masks::*;
+
+fn renderer(scene: Scene, device: DeviceChoice) -> Renderer {
+    Renderer::new(scene, &RendererOptions { device, strict: true, ..RendererOptions::default() }, &|_, _| {}).unwrap()
+}
+
+fn devices() -> Vec<DeviceChoice> {
+    let mut devices = vec![DeviceChoice::Cpu];
+    if !no_opencl() {
+        devices.push(DeviceChoice::OpenCl(None));
+    }
+    devices
+}
+
+/// A frame and its classes.
+fn draw(renderer: &mut Renderer, options: &RenderOptions) -> (Frame, Vec<u32>) {
+    let frame = renderer.render_exactly(options, Keep::planes(&[PLANE_CLASS]).and(Keep::COUNTERS)).unwrap();
+    let classes = renderer.plane(PLANE_CLASS).unwrap();
+    (frame, classes)
+}
+
+fn assert_same_in_bands(renderer: &mut Renderer, options: &RenderOptions, band_rows: &[u32]) {
+    let (whole, whole_classes) = draw(renderer, options);
+    for &rows in band_rows {
+        let banded = RenderOptions { band_rows: Some(rows), ..options.clone() };
+        let (frame, classes) = draw(renderer, &banded);
+        assert!(frame.pixels == whole.pixels, "bands of {rows} rows: another picture");
+        assert!(classes == whole_classes, "bands of {rows} rows: other classes");
+        assert_eq!(frame.stats.pixels, whole.stats.pixels, "bands of {rows} rows");
+        assert_eq!(frame.stats.failed_tests, whole.stats.failed_tests, "bands of {rows} rows");
+        if options.mode == Mode::Full {
+            assert_eq!(frame.stats.work, whole.stats.work, "bands of {rows} rows");
+        }
+    }
+}
+
+#[test]
+fn five_band_heights_draw_one_picture_on_both_back_ends() {
+    for device in devices() {
+        let mut renderer = renderer(builtin::to_scene("rods").unwrap(), device);
+        for (block, samples) in [(2, 1), (4, 1), (2, 2)] {
+            let options = RenderOptions { width: 101, height: 75, block, samples, ..RenderOptions::default() };
+            assert_same_in_bands(&mut renderer, &options, &[2, 6, 8, 20, 64]);
+        }
+        let full = RenderOptions { width: 61, height: 47, samples: 2, mode: Mode::Full, ..RenderOptions::default() };
+        assert_same_in_bands(&mut renderer, &full, &[1, 7, 30]);
+    }
+}
+
+/// A wall with a thin wire before it that leans a little and is seen by one row of base pixels at most: at its foot, on
+/// a block as wide as several pixels. Everything above is found by correction alone, upwards through all bands.
+fn wire_scene() -> Scene {
+    let eye = Eye { at: DVec3::new(0.0, 0.0, 4.0), look_at: DVec3::ZERO, fov_degrees: 40.0 };
+    let mut builder = eye.seen_from(SceneBuilder::new("wire"));
+    builder.object(matte(Vec3::splat(0.6)));
+    builder.quad([v(-4.0, -4.0, 0.0), v(4.0, -4.0, 0.0), v(4.0, 4.0, 0.0), v(-4.0, 4.0, 0.0)]);
+    builder.object(matte(Vec3::new(0.9, 0.2, 0.1)));
+    // The wire: about 0.9 pixels wide at 96 pixels, between two columns of base pixels.
+    let pixel = 2.0 * 3.0 * 20f64.to_radians().tan() / 96.0;
+    let (left, right) = ((pixel * 1.05) as f32, (pixel * 1.95) as f32);
+    builder.quad([v(left, -1.0, 1.0), v(right, -1.0, 1.0), v(right, 1.0, 1.0), v(left, 1.0, 1.0)]);
+    builder.quad([v(-0.1, -1.0, 1.0), v(0.15, -1.0, 1.0), v(0.15, -0.95, 1.0), v(-0.1, -0.95, 1.0)]);
+    builder.build(10.0)
+}
+
+#[test]
+fn a_thin_wire_is_followed_through_every_band() {
+    let options = RenderOptions { width: 96, height: 96, ..RenderOptions::default() };
+    for device in devices() {
+        let mut renderer = renderer(wire_scene(), device);
+        let without = RenderOptions { correction: Correction::Off, ..options.clone() };
+        let (full, _) = draw(&mut renderer, &RenderOptions { mode: Mode::Full, ..options.clone() });
+        let (blind, _) = draw(&mut renderer, &without);
+        let (whole, classes) = draw(&mut renderer, &options);
+        // The wire matters: without correction most of it is missing, with it the picture is whole.
+        let rows_apart =
+            |frame: &Frame| (0..96).filter(|&y| frame.pixels[y * 96..][..96] != full.pixels[y * 96..][..96]).count();
+        assert!(rows_apart(&blind) > 40, "only {} rows miss the wire", rows_apart(&blind));
+        assert_eq!(rows_apart(&whole), 0);
+        let corrected = |rows: std::ops::Range<usize>| {
+            classes[rows.start * 96..rows.end * 96].iter().any(|c| c & CLASS_MASK == CLASS_CORRECTED)
+        };
+        assert!((30..80).step_by(2).all(|y| corrected(y..y + 2)), "the wire crosses every band");
+        assert_same_in_bands(&mut renderer, &options, &[2, 4, 8, 16, 48]);
+        assert_same_in_bands(&mut renderer, &RenderOptions { block: 4, ..options.clone() }, &[4, 12, 16, 32, 48]);
+    }
+}
+
+#[test]
+fn a_budget_cuts_the_frame_and_is_kept() {
+    let options = RenderOptions { width: 300, height: 200, ..RenderOptions::default() };
+    let scene = || builtin::to_scene("spheres").unwrap();
+    let draw_within = |bytes: Option<u64>| {
+        let renderer_options =
+            RendererOptions { device: DeviceChoice::Cpu, memory_budget_bytes: bytes, ..RendererOptions::default() };
+        let mut renderer = Renderer::new(scene(), &renderer_options, &|_, _| {}).unwrap();
+        let frame = renderer.render_exactly(&options, Keep::default());
+        (frame.map(|frame| frame.pixels), renderer.peak_device_bytes())
+    };
+    let (whole, unlimited) = draw_within(None);
+    let whole = whole.unwrap();
+    for share in [2, 5] {
+        let budget = unlimited / share;
+        let (pixels, peak) = draw_within(Some(budget));
+        assert!(pixels.unwrap() == whole, "{budget} bytes: another picture");
+        assert!(peak <= budget && peak < unlimited, "{peak} bytes in use, {budget} allowed, {unlimited} without limit");
+    }
+    let error = draw_within(Some(100 << 10)).0.map(|_| "drawn").unwrap_err();
+    assert!(matches!(&error, Error::LimitExceeded { limit, .. } if limit == "--memory-budget"), "{error}");
+}
+
+#[test]
+fn sweeps_need_the_whole_frame() {
+    let mut renderer = renderer(builtin::to_scene("spheres").unwrap(), DeviceChoice::Cpu);
+    let options = RenderOptions {
+        width: 64,
+        height: 64,
+        correction_method: CorrectionMethod::Sweeps,
+        band_rows: Some(16),
+        ..RenderOptions::default()
+    };
+    let error = renderer.render_exactly(&options, Keep::default()).unwrap_err().to_string();
+    assert!(error.contains("sweeps") && error.contains("converged"), "{error}");
+    // The renderer stays usable.
+    renderer.render_exactly(&RenderOptions { band_rows: None, ..options }, Keep::default()).unwrap();
+}
+
+#[test]
+fn any_size_from_one_pixel_on() {
+    let mut renderer = renderer(builtin::to_scene("spheres").unwrap(), DeviceChoice::Cpu);
+    for (width, height) in [(1, 1), (1, 9), (9, 1), (2, 3), (5, 300), (400, 3)] {
+        for (samples, block) in [(1, 2), (1, 4), (2, 2), (4, 4)] {
+            let options = RenderOptions { width, height, samples, block, ..RenderOptions::default() };
+            assert_same_in_bands(&mut renderer, &options, &[1, 4, 37]);
+        }
+    }
+}
