@@ -39,6 +39,7 @@ pub mod options;
 pub mod picture;
 pub mod pipeline;
 pub mod profiles;
+pub mod quick_test;
 pub mod renderer;
 pub mod report;
 pub mod resolve;

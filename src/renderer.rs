@@ -16,10 +16,11 @@ use crate::frame::{Frame, FrameStats};
 use crate::kdtree::{BuildOptions, KdStatistics, KdTree};
 use crate::kernels::Mutation;
 use crate::layout::*;
-use crate::opencl::{self, OpenOptions};
+use crate::opencl::{self, CacheFolder, OpenOptions};
 use crate::options::{Mode, RenderOptions};
 use crate::pipeline;
 use crate::profiles::Profile;
+use crate::quick_test;
 use crate::resolve::resolve;
 use crate::scene::{Scene, View};
 use crate::scene_buffers::{SceneBuffers, Shading};
@@ -53,6 +54,8 @@ pub struct RendererOptions {
     pub memory_budget_bytes: Option<u64>,
     /// Kernels broken on purpose, for tests and the self-test's negative control.
     pub mutation: Option<Mutation>,
+    /// Where compiled programs and verdicts of self-tests are kept.
+    pub cache: CacheFolder,
 }
 
 /// How long it took to make ready, in milliseconds.
@@ -321,15 +324,25 @@ impl Renderer {
 
 /// What small buffers beside the scene's arrays and the frame's may take, such as the frame's parameters.
 const SMALL_BUFFERS_BYTES: u64 = 64 << 10;
-/// What a frame may take where nobody says otherwise.
-const DEFAULT_BUDGET_BYTES: u64 = 4 << 30;
+/// Most device memory of a frame and its scene where nobody says otherwise, in bytes.
+pub const DEFAULT_BUDGET_BYTES: u64 = 4 << 30;
 
 fn open_device(buffers: &Arc<SceneBuffers>, options: &RendererOptions, notices: &mut Vec<String>) -> Result<Device> {
     let twin = || Device::Twin(Box::new(TwinBackend::new(Arc::clone(buffers))));
-    match open_opencl(buffers, options) {
+    let tested = || {
+        let mut opened = open_opencl(buffers, options)?;
+        if let Some(backend) = &mut opened {
+            quick_test::check(backend, options.profile.as_ref())?;
+        }
+        Ok(opened)
+    };
+    match tested() {
         Ok(Some(backend)) => Ok(Device::OpenCl(Box::new(backend))),
         Ok(None) => Ok(twin()),
-        Err(error @ Error::NoOpenCl { .. }) if options.device == DeviceChoice::Auto => {
+        // No device, or one that a quick self-test found wanting.
+        Err(error @ (Error::NoOpenCl { .. } | Error::SelfTest { .. } | Error::KernelBuild { .. }))
+            if options.device == DeviceChoice::Auto =>
+        {
             notices.push(format!("drawing on the CPU twin: {error}"));
             Ok(twin())
         }
@@ -348,6 +361,7 @@ pub(crate) fn open_opencl(buffers: &Arc<SceneBuffers>, options: &RendererOptions
         index,
         profile: options.profile.clone(),
         memory_budget_bytes: options.memory_budget_bytes,
+        cache: options.cache.clone(),
         ..OpenOptions::default()
     };
     let mut backend = OpenClBackend::new(opencl::open_with(&open)?, buffers, options.strict)?;

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 pub mod command;
+pub mod doors;
 pub mod fixtures;
 pub mod frames;
 pub mod masks;

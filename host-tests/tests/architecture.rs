@@ -18,7 +18,7 @@ const LAYERS: &[&[&str]] = &[
     &["opencl", "profiles"],
     &["backend"],
     &["pipeline"],
-    &["frame", "fallback"],
+    &["frame", "fallback", "quick_test"],
     &["bands"],
     &["renderer"],
     &["compare", "layers", "report", "selftest"],

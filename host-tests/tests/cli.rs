@@ -148,7 +148,24 @@ fn a_dump_of_the_devices_is_a_profile_for_render() {
     let run =
         rarefy(&folder, "render wall --device opencl --size 16x16 --profile adreno-420 -o b.png --json -").expect(0);
     assert_eq!(json(&run.stdout)["device"]["profile"], "adreno-420");
-    assert!(rarefy(&folder, "devices --profile adreno-420").expect(0).stdout.contains("adreno-420"));
+    let rows = |arguments: &str| rarefy(&folder, arguments).expect(0).stdout;
+    assert_eq!(rows("devices"), rows("devices --profile adreno-420"), "the reference phone stands beside the device");
+    let row = |text: &str, name: &str| -> Vec<String> {
+        let line =
+            text.lines().find(|line| line.trim_start().starts_with(name)).unwrap_or_else(|| panic!("{name}: {text}"));
+        line.trim_start()[name.len()..].split_whitespace().map(str::to_string).collect()
+    };
+    let beside = rows("devices --profile embedded-floor");
+    assert_eq!(row(&beside, "limit"), ["device", "embedded-floor"]);
+    for stage in ["step1", "step2a", "step2b", "step2c", "step3a", "step3b", "step3c", "step4"] {
+        assert_eq!(row(&beside, &format!("work-group of {stage}, items")).len(), 2, "{stage}");
+    }
+    for name in ["work-group of scans, items", "lanes", "memory budget, MiB", "kernel arguments, bytes"] {
+        assert_eq!(row(&beside, name).len(), 2, "{name}");
+    }
+    assert!(row(&beside, "slice, ms").len() >= 2 && row(&beside, "traversal").len() >= 2);
+    let alone = rows("devices --profile none");
+    assert_eq!((row(&alone, "limit").len(), row(&alone, "lanes").len()), (1, 1));
 }
 
 #[test]
@@ -197,7 +214,7 @@ fn bad_input_is_one_clear_error_and_no_file() {
         ("render wall --size 0x0", &["--size", "0x0", "1 to 16384"]),
         ("render wall --size 0x64", &["--size", "0x64"]),
         ("render wall --size 16385x1", &["--size", "16385x1", "1 to 16384"]),
-        ("render wall --size 16384x16384", &["16384x16384", "MiB", "--size"]),
+        ("render wall --size 1024x1024 --memory-budget 1", &["1024x1024", "--memory-budget", "--size"]),
         ("render wall --size 256x256 --memory-budget 1", &["256x256", "--memory-budget", "1 MiB"]),
         ("render wall --size -1x4", &["-1x4"]),
         ("render wall --size 64", &["WIDTHxHEIGHT"]),

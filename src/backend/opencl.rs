@@ -8,7 +8,8 @@ use super::{Backend, BackendInfo, BufferSizes, FrameBuffer, MemoryLimits};
 use crate::error::Result;
 use crate::kernels::{self, Mutation};
 use crate::layout::{self, BuildFlavour, FrameParams, StepParams};
-use crate::opencl::{AnyBuffer, Arg, Buffer, Door, Kernel as DeviceKernel, Launch, ProgramSource};
+use crate::opencl::{AnyBuffer, Arg, Buffer, Door, Kernel as DeviceKernel, Launch, Limits, ProgramSource};
+use crate::profiles::Choices;
 use crate::scene_buffers::{SceneBuffers, Shading};
 use crate::stage::{Binding, Items, Kernel};
 
@@ -43,6 +44,24 @@ struct SceneOnDevice {
     tables: Buffer<u32>,
 }
 
+impl SceneOnDevice {
+    fn upload(door: &Door, scene: &SceneBuffers) -> Result<Self> {
+        Ok(SceneOnDevice {
+            frame: door.buffer("frame", 1)?,
+            lights: door.buffer_from("lights", &scene.lights)?,
+            nodes: door.buffer_from("nodes", &scene.tree.nodes)?,
+            leaf_triangles: door.buffer_from("leaf_triangles", &scene.tree.leaf_triangles)?,
+            triangles: door.buffer_from("triangles", &scene.triangles)?,
+            triangle_shading: door.buffer_from("triangle_shading", &scene.triangle_shading)?,
+            materials: door.buffer_from("materials", &scene.materials)?,
+            object_materials: door.buffer_from("object_materials", &scene.object_materials)?,
+            textures: door.buffer_from("textures", &scene.textures)?,
+            texels: door.buffer_from("texels", &scene.texels)?,
+            tables: door.buffer_from("tables", &scene.tables)?,
+        })
+    }
+}
+
 struct FrameOnDevice {
     attributes: Buffer<u32>,
     counters: Buffer<u32>,
@@ -71,24 +90,8 @@ impl OpenClBackend {
     /// # Errors
     /// A limit of the device or its profile, or a failing call.
     pub fn new(door: Door, scene: &Arc<SceneBuffers>, strict: bool) -> Result<Self> {
-        let on_device = SceneOnDevice {
-            frame: door.buffer("frame", 1)?,
-            lights: door.buffer_from("lights", &scene.lights)?,
-            nodes: door.buffer_from("nodes", &scene.tree.nodes)?,
-            leaf_triangles: door.buffer_from("leaf_triangles", &scene.tree.leaf_triangles)?,
-            triangles: door.buffer_from("triangles", &scene.triangles)?,
-            triangle_shading: door.buffer_from("triangle_shading", &scene.triangle_shading)?,
-            materials: door.buffer_from("materials", &scene.materials)?,
-            object_materials: door.buffer_from("object_materials", &scene.object_materials)?,
-            textures: door.buffer_from("textures", &scene.textures)?,
-            texels: door.buffer_from("texels", &scene.texels)?,
-            tables: door.buffer_from("tables", &scene.tables)?,
-        };
-        let widest = door.limits().fit_work_group([SCAN_GROUP, 1], SCAN_GROUP as u64, true)[0];
-        // The scratch memory of a scan: two words per work-item.
-        let local_words = usize::try_from(door.limits().local_mem_bytes / 8).unwrap_or(usize::MAX).max(1);
-        // Groups of one would never add anything up; a device that has no larger ones refuses the launch.
-        let scan_group = previous_power_of_two(widest.min(local_words)).max(2) as u32;
+        let on_device = SceneOnDevice::upload(&door, scene)?;
+        let scan_group = scan_group(door.limits());
         Ok(OpenClBackend {
             door,
             scene: on_device,
@@ -105,6 +108,35 @@ impl OpenClBackend {
     pub fn mutate(&mut self, mutation: Option<Mutation>) {
         self.mutation = mutation;
         self.kernels.clear();
+    }
+
+    /// Does `work` with `scene` in place of the own one, with the same programs; afterwards the own scene, an empty frame
+    /// and fresh measurements are back. `scene` must be shaded by the own scene's rules.
+    pub(crate) fn with_scene<T>(
+        &mut self,
+        scene: &Arc<SceneBuffers>,
+        work: impl FnOnce(&mut Self) -> Result<T>,
+    ) -> Result<T> {
+        let uploaded = SceneOnDevice::upload(&self.door, scene)?;
+        let own = std::mem::replace(&mut self.scene, uploaded);
+        let done = work(self);
+        self.scene = own;
+        self.buffers = None;
+        let fresh = self.door.start_afresh();
+        let done = done?;
+        fresh.map(|()| done)
+    }
+
+    /// The options and texts that the device's compiler gets, in one: what a verdict about the kernels depends on.
+    pub(crate) fn program_texts(&self) -> String {
+        let stages = crate::stage::Stage::ALL.map(|stage| kernels::stage_source(stage, self.mutation.as_ref()));
+        let probe = kernels::assemble("probe.cl", self.mutation.as_ref());
+        format!("{} {:?} {probe} {}", layout::build_options(self.flavour), self.flavour, stages.concat())
+    }
+
+    /// The rules that its scene is shaded by.
+    pub(crate) fn shading(&self) -> Shading {
+        if self.flavour.anchor { Shading::Anchor } else { Shading::Full }
     }
 
     /// Milliseconds spent building programs so far.
@@ -157,6 +189,24 @@ impl OpenClBackend {
         }
         self.program_ms += started.elapsed().as_secs_f64() * 1e3;
         Ok(())
+    }
+}
+
+/// Work-items of a scan's work-group within `limits`: a power of two up to 256.
+pub fn scan_group(limits: &Limits) -> u32 {
+    let widest = limits.fit_work_group([SCAN_GROUP, 1], SCAN_GROUP as u64, true)[0];
+    // The scratch memory of a scan: two words per work-item.
+    let local_words = usize::try_from(limits.local_mem_bytes / 8).unwrap_or(usize::MAX).max(1);
+    // Groups of one would never add anything up; a device that has no larger ones refuses the launch.
+    previous_power_of_two(widest.min(local_words)).max(2) as u32
+}
+
+/// The work-group that `kernel` is launched with before it is fitted to the kernel's own limit; `None`: the scan's.
+pub fn work_group(choices: &Choices, kernel: Kernel) -> Option<[usize; 2]> {
+    match kernel.items() {
+        Items::Grid => Some(choices.work_group(kernel.stage().name())),
+        Items::List | Items::Chunks => Some([LIST_GROUP, 1]),
+        Items::Groups => None,
     }
 }
 
@@ -239,23 +289,15 @@ impl Backend for OpenClBackend {
             }
         }
         let barrier = kernel.items() == Items::Groups;
-        let (global, local) = match kernel.items() {
-            Items::Grid => {
-                let wanted = self.door.choices().work_group(kernel.stage().name());
-                (
-                    [step.grid_width as usize, step.grid_height as usize],
-                    self.door.fit_work_group(device_kernel, wanted, false),
-                )
-            }
-            Items::List => {
-                ([step.item_count as usize, 1], self.door.fit_work_group(device_kernel, [LIST_GROUP, 1], false))
-            }
-            Items::Chunks => (
-                [step.item_count.div_ceil(32) as usize, 1],
-                self.door.fit_work_group(device_kernel, [LIST_GROUP, 1], false),
-            ),
+        let global = match kernel.items() {
+            Items::Grid => [step.grid_width as usize, step.grid_height as usize],
+            Items::List | Items::Groups => [step.item_count as usize, 1],
+            Items::Chunks => [step.item_count.div_ceil(32) as usize, 1],
+        };
+        let local = match work_group(self.door.choices(), kernel) {
+            Some(wanted) => self.door.fit_work_group(device_kernel, wanted, false),
             // The scan's levels depend on the group: it is not fitted but checked.
-            Items::Groups => ([step.item_count as usize, 1], [step.scan_group as usize, 1]),
+            None => [step.scan_group as usize, 1],
         };
         if global.contains(&0) {
             return Ok(());

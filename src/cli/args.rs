@@ -239,7 +239,7 @@ impl DrawArgs {
                 ShadingArg::Anchor => Shading::Anchor,
             },
             memory_budget_bytes: budget.transpose()?,
-            mutation: None,
+            ..RendererOptions::default()
         })
     }
 
@@ -373,8 +373,8 @@ pub struct DevicesArgs {
     /// Write all limits as JSON into this file; `-` is standard output. Such a file is a device profile.
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
-    /// Show the limits beside those of this profile.
-    #[arg(long, default_value = "none")]
+    /// Show limits and choices beside those under this profile; `none`: the device's alone.
+    #[arg(long, default_value = "adreno-420")]
     pub profile: String,
 }
 

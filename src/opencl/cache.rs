@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Compiled programs on disk: phones take seconds to build kernels, so that is done once per driver.
+//! What is kept on disk: compiled programs, since phones take seconds to build kernels, and verdicts of self-tests. Both
+//! are made once per driver.
 //!
 //! An entry names everything that it depends on, and carries a checksum; whatever does not fit is built anew. Entries
 //! are written aside and renamed, so that processes may race. A cache that cannot be written costs time, nothing else.
@@ -8,15 +9,25 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
+use super::door::Door;
+
 /// The variable that names the cache folder.
 pub(super) const FOLDER_VARIABLE: &str = "RAREFY_CACHE_DIR";
 
-const MAGIC: &[u8] = b"rarefy program 1\n";
-const SUFFIX: &str = "clbin";
-/// Beyond this many entries the oldest go: each edit of a kernel leaves one behind.
+/// Beyond this many entries of a kind the oldest go: each edit of a kernel leaves one behind.
 const MOST_ENTRIES: usize = 256;
 
-/// Where compiled programs are kept.
+/// A kind of entries: how their files begin and end.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Kind {
+    magic: &'static [u8],
+    suffix: &'static str,
+}
+
+const PROGRAMS: Kind = Kind { magic: b"rarefy program 1\n", suffix: "clbin" };
+const VERDICTS: Kind = Kind { magic: b"rarefy verdict 1\n", suffix: "verdict" };
+
+/// Where compiled programs and verdicts of self-tests are kept.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub enum CacheFolder {
     /// `RAREFY_CACHE_DIR`, else `rarefy` in `XDG_CACHE_HOME`, else `.cache/rarefy` in the home folder, else nowhere. On
@@ -44,9 +55,10 @@ impl CacheFolder {
     }
 }
 
-/// A cache of compiled programs.
+/// A cache of entries of one kind.
 pub(super) struct Cache {
     folder: Option<PathBuf>,
+    kind: Kind,
 }
 
 /// FNV-1a, 128 bits: no defence against malice, but no two of a person's kernels will ever meet.
@@ -61,7 +73,7 @@ fn hash(parts: &[&[u8]]) -> u128 {
     state
 }
 
-/// What a compiled program depends on.
+/// What an entry depends on.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Key(u128);
 
@@ -72,10 +84,15 @@ impl Key {
 }
 
 impl Cache {
-    /// `driver_caches`: the driver keeps compiled kernels itself.
-    pub fn new(folder: &CacheFolder, driver_caches: bool) -> Self {
+    /// Compiled programs. `driver_caches`: the driver keeps compiled kernels itself.
+    pub fn programs(folder: &CacheFolder, driver_caches: bool) -> Self {
         let asked_for = *folder != CacheFolder::Usual || std::env::var_os(FOLDER_VARIABLE).is_some();
-        Cache { folder: if driver_caches && !asked_for { None } else { folder.path() } }
+        Cache { folder: if driver_caches && !asked_for { None } else { folder.path() }, kind: PROGRAMS }
+    }
+
+    /// Verdicts of self-tests: no driver keeps those.
+    pub fn verdicts(folder: &CacheFolder) -> Self {
+        Cache { folder: folder.path(), kind: VERDICTS }
     }
 
     /// Whether anything is kept.
@@ -84,16 +101,16 @@ impl Cache {
     }
 
     fn entry(&self, key: &Key) -> Option<PathBuf> {
-        Some(self.folder.as_ref()?.join(format!("{:032x}.{SUFFIX}", key.0)))
+        Some(self.folder.as_ref()?.join(format!("{:032x}.{}", key.0, self.kind.suffix)))
     }
 
     /// The binary for `key`, if there is a sound one.
     pub fn load(&self, key: &Key) -> Option<Vec<u8>> {
         let path = self.entry(key)?;
         let bytes = std::fs::read(&path).ok()?;
-        let binary = unpack(key, &bytes);
+        let binary = unpack(self.kind, key, &bytes);
         if binary.is_none() {
-            log::info!("{}: a damaged or foreign cache entry, built anew", path.display());
+            log::info!("{}: a damaged or foreign cache entry, made anew", path.display());
         }
         binary.map(<[u8]>::to_vec)
     }
@@ -101,11 +118,11 @@ impl Cache {
     /// Keeps the binary for `key`; failures are logged only.
     pub fn store(&self, key: &Key, binary: &[u8]) {
         let (Some(folder), Some(path)) = (&self.folder, self.entry(key)) else { return };
-        if let Err(error) = write_whole(folder, &path, &pack(key, binary)) {
-            log::info!("{}: compiled programs are not kept: {error}", folder.display());
+        if let Err(error) = write_whole(folder, &path, &pack(self.kind, key, binary)) {
+            log::info!("{}: nothing is kept: {error}", folder.display());
             return;
         }
-        prune(folder);
+        prune(folder, self.kind);
     }
 
     /// Forgets the entry for `key`, which turned out to be of no use.
@@ -117,16 +134,34 @@ impl Cache {
     }
 }
 
-fn pack(key: &Key, binary: &[u8]) -> Vec<u8> {
-    let mut bytes = MAGIC.to_vec();
+impl Door {
+    fn verdict_key(&self, about: &[&str]) -> Key {
+        let info = self.info();
+        let who = [&info.platform, &info.name, &info.version, &info.driver, env!("CARGO_PKG_VERSION")];
+        Key::new(&[&who, about].concat())
+    }
+
+    /// The verdict that was kept about this device and driver, this version of the library and `about`.
+    pub(crate) fn verdict(&self, about: &[&str]) -> Option<String> {
+        String::from_utf8(self.verdicts.load(&self.verdict_key(about))?).ok()
+    }
+
+    /// Keeps a verdict for later runs; if that fails, they come to their own.
+    pub(crate) fn keep_verdict(&self, about: &[&str], verdict: &str) {
+        self.verdicts.store(&self.verdict_key(about), verdict.as_bytes());
+    }
+}
+
+fn pack(kind: Kind, key: &Key, binary: &[u8]) -> Vec<u8> {
+    let mut bytes = kind.magic.to_vec();
     bytes.extend_from_slice(&key.0.to_le_bytes());
     bytes.extend_from_slice(&hash(&[binary]).to_le_bytes());
     bytes.extend_from_slice(binary);
     bytes
 }
 
-fn unpack<'a>(key: &Key, bytes: &'a [u8]) -> Option<&'a [u8]> {
-    let rest = bytes.strip_prefix(MAGIC)?.strip_prefix(&key.0.to_le_bytes())?;
+fn unpack<'a>(kind: Kind, key: &Key, bytes: &'a [u8]) -> Option<&'a [u8]> {
+    let rest = bytes.strip_prefix(kind.magic)?.strip_prefix(&key.0.to_le_bytes())?;
     let (checksum, binary) = rest.split_first_chunk::<16>()?;
     (!binary.is_empty() && u128::from_le_bytes(*checksum) == hash(&[binary])).then_some(binary)
 }
@@ -140,11 +175,11 @@ fn write_whole(folder: &Path, path: &Path, bytes: &[u8]) -> std::io::Result<()> 
 }
 
 /// Removes the oldest entries beyond [`MOST_ENTRIES`].
-fn prune(folder: &Path) {
+fn prune(folder: &Path, kind: Kind) {
     let Ok(files) = std::fs::read_dir(folder) else { return };
     let mut entries: Vec<(SystemTime, PathBuf)> = files
         .flatten()
-        .filter(|file| file.path().extension().is_some_and(|suffix| suffix == SUFFIX))
+        .filter(|file| file.path().extension().is_some_and(|suffix| suffix == kind.suffix))
         .filter_map(|file| Some((file.metadata().ok()?.modified().ok()?, file.path())))
         .collect();
     entries.sort();
@@ -162,7 +197,7 @@ mod tests {
 
     fn scratch() -> (tempfile::TempDir, Cache) {
         let folder = tempfile::tempdir().unwrap();
-        let cache = Cache::new(&CacheFolder::At(folder.path().join("sub").join("cache")), false);
+        let cache = Cache::programs(&CacheFolder::At(folder.path().join("sub").join("cache")), false);
         (folder, cache)
     }
 
@@ -209,7 +244,9 @@ mod tests {
         let file = folder.path().join("file");
         std::fs::write(&file, "in the way").unwrap();
         let key = Key::new(&["a"]);
-        for cache in [Cache::new(&CacheFolder::At(file.join("sub")), false), Cache::new(&CacheFolder::Off, true)] {
+        for cache in
+            [Cache::programs(&CacheFolder::At(file.join("sub")), false), Cache::programs(&CacheFolder::Off, true)]
+        {
             cache.store(&key, b"binary");
             assert_eq!(cache.load(&key), None);
         }
@@ -223,6 +260,18 @@ mod tests {
         }
         let count = std::fs::read_dir(cache.folder.as_ref().unwrap()).unwrap().count();
         assert_eq!(count, MOST_ENTRIES);
+    }
+
+    #[test]
+    fn verdicts_and_programs_do_not_meet() {
+        let (folder, programs) = scratch();
+        let verdicts = Cache::verdicts(&CacheFolder::At(folder.path().join("sub").join("cache")));
+        let key = Key::new(&["a"]);
+        verdicts.store(&key, b"passed");
+        assert_eq!(programs.load(&key), None);
+        std::fs::copy(verdicts.entry(&key).unwrap(), programs.entry(&key).unwrap()).unwrap();
+        assert_eq!(programs.load(&key), None);
+        assert_eq!(verdicts.load(&key).unwrap(), b"passed");
     }
 
     #[test]

@@ -65,6 +65,11 @@ pub struct DeviceFound {
 }
 
 impl DeviceFound {
+    /// What would be chosen for this device, or what `profile` chooses.
+    pub fn choices<'a>(&'a self, profile: Option<&'a Profile>) -> &'a Choices {
+        profile.unwrap_or(&self.profile).choices()
+    }
+
     /// What the door would enforce on this device, under `profile` if given.
     pub fn limits(&self, profile: Option<&Profile>) -> Limits {
         Limits::new(&self.profile, profile)

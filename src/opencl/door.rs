@@ -28,7 +28,7 @@ pub struct OpenOptions {
     pub library: Option<PathBuf>,
     /// The most memory that buffers may use together, in bytes.
     pub memory_budget_bytes: Option<u64>,
-    /// Where compiled programs are kept.
+    /// Where compiled programs and verdicts of self-tests are kept.
     pub cache: CacheFolder,
     /// For tests: the most work-items of every slice.
     pub slice_items: Option<u64>,
@@ -100,6 +100,7 @@ pub(super) struct State {
 pub struct Door {
     pub(super) shared: Arc<Shared>,
     pub(super) cache: Cache,
+    pub(super) verdicts: Cache,
     pub(super) state: Mutex<State>,
     choices: Choices,
     profile_name: Option<String>,
@@ -162,7 +163,8 @@ pub fn open_with(options: &OpenOptions) -> Result<Door> {
             budget_bytes: options.memory_budget_bytes,
             memory: Mutex::new(MemoryUse::default()),
         }),
-        cache: Cache::new(&options.cache, driver_caches),
+        cache: Cache::programs(&options.cache, driver_caches),
+        verdicts: Cache::verdicts(&options.cache),
         state: Mutex::new(state),
         choices,
         profile_name: options.profile.as_ref().map(|profile| profile.name().to_string()),
@@ -220,6 +222,14 @@ impl Door {
     pub fn take_timings(&self) -> Result<Vec<(&'static str, f64)>> {
         self.finish()?;
         Ok(lock(&self.state).timing.take())
+    }
+
+    /// Forgets what launches so far took and how much memory they had: after a self-test, whose launches are not typical.
+    pub(crate) fn start_afresh(&self) -> Result<()> {
+        self.take_timings()?;
+        self.reset_peak_memory();
+        lock(&self.state).planner.forget();
+        Ok(())
     }
 
     /// The number of enqueued launches (slices) since the door was opened.

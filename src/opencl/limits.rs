@@ -4,6 +4,9 @@
 use crate::profiles::Profile;
 use crate::{Error, Result};
 
+/// The remedy where no option makes a request smaller.
+const OTHER_DEVICE: &str = "use another device, or --device cpu";
+
 /// The limits that the door enforces. A number without a known limit is the largest of its type.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Limits {
@@ -248,27 +251,42 @@ impl Limits {
     /// Checks the bytes of all arguments of a kernel.
     pub fn check_parameters(&self, what: &str, bytes: u64) -> Result<()> {
         let what = format!("the argument list of {what}");
-        self.most(&what, "cl_device_max_parameter_size", bytes, self.max_parameter_bytes, " bytes", "")
+        self.most(&what, "cl_device_max_parameter_size", bytes, self.max_parameter_bytes, " bytes", OTHER_DEVICE)
     }
 
     /// Checks the sizes of a kernel's `constant` arguments, in bytes.
     pub fn check_constants(&self, what: &str, sizes: &[u64]) -> Result<()> {
         let count = sizes.len() as u64;
         let what_count = format!("the number of constant arguments of {what}");
-        self.most(&what_count, "cl_device_max_constant_args", count, self.max_constant_args, "", "")?;
+        self.most(&what_count, "cl_device_max_constant_args", count, self.max_constant_args, "", OTHER_DEVICE)?;
         let what = format!("a constant argument of {what}");
         sizes.iter().try_for_each(|&bytes| {
             let allowed = self.max_constant_buffer_bytes;
-            self.most(&what, "cl_device_max_constant_buffer_size", bytes, allowed, " bytes", "")
+            let remedy = "use fewer lights, another device, or --device cpu";
+            self.most(&what, "cl_device_max_constant_buffer_size", bytes, allowed, " bytes", remedy)
         })
     }
 
     /// Checks the number of images that a kernel reads and writes.
     pub fn check_image_args(&self, what: &str, read: u64, written: u64) -> Result<()> {
         let read_what = format!("the number of images read by {what}");
-        self.most(&read_what, "cl_device_max_read_image_args", read, self.read_image_args, "", "")?;
+        self.most(
+            &read_what,
+            "cl_device_max_read_image_args",
+            read,
+            self.read_image_args,
+            "",
+            "use the memory path `buffers`",
+        )?;
         let what = format!("the number of images written by {what}");
-        self.most(&what, "cl_device_max_write_image_args", written, self.write_image_args, "", "")
+        self.most(
+            &what,
+            "cl_device_max_write_image_args",
+            written,
+            self.write_image_args,
+            "",
+            "use the memory path `buffers`",
+        )
     }
 
     /// Checks a 2D image, of `layers` layers if it is an array (else 1).
@@ -308,7 +326,7 @@ impl Limits {
             limit: self.name("cl_device_mem_base_addr_align"),
             wanted: format!("a start at byte {offset}"),
             allowed: format!("multiples of {align} bytes"),
-            remedy: String::new(),
+            remedy: "round the start up".into(),
         })
     }
 
@@ -322,7 +340,7 @@ impl Limits {
             limit: self.name("cl_device_extensions"),
             wanted: extension.to_string(),
             allowed: if self.extensions.is_empty() { "no extension".into() } else { self.extensions.join(" ") },
-            remedy: String::new(),
+            remedy: OTHER_DEVICE.into(),
         })
     }
 
@@ -336,7 +354,7 @@ impl Limits {
             limit: self.name("cl_device_version"),
             wanted: format!("OpenCL {}.{}", wanted.0, wanted.1),
             allowed: format!("OpenCL {}.{}", self.version.0, self.version.1),
-            remedy: String::new(),
+            remedy: OTHER_DEVICE.into(),
         })
     }
 
@@ -344,7 +362,14 @@ impl Limits {
     pub fn check_global(&self, what: &str, items: u64) -> Result<()> {
         // This program's own `size_t` counts as well.
         let allowed = if self.address_bits >= 64 { usize::MAX as u64 } else { u64::from(u32::MAX) };
-        self.most(&format!("a launch of {what}"), "cl_device_address_bits", items, allowed, " work-items", "")
+        self.most(
+            &format!("a launch of {what}"),
+            "cl_device_address_bits",
+            items,
+            allowed,
+            " work-items",
+            "use a smaller picture",
+        )
     }
 }
 

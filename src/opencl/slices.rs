@@ -90,6 +90,11 @@ impl Planner {
         Planner { target_ms, forced, stages: Vec::new() }
     }
 
+    /// Forgets everything learned.
+    pub fn forget(&mut self) {
+        self.stages.clear();
+    }
+
     /// The most work-items of the next slice of a stage.
     pub fn items(&self, label: &'static str) -> u64 {
         if let Some(items) = self.forced {

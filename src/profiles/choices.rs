@@ -16,6 +16,13 @@ pub enum MemoryPath {
     Images,
 }
 
+impl MemoryPath {
+    /// The word that stands for it in a profile.
+    pub fn name(self) -> &'static str {
+        MEMORY_PATHS[self as usize].0
+    }
+}
+
 /// How a kernel remembers the way through the kd-tree.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Traversal {
@@ -26,6 +33,13 @@ pub enum Traversal {
     ShortStack,
     /// No stack at all.
     Stackless,
+}
+
+impl Traversal {
+    /// The word that stands for it in a profile.
+    pub fn name(self) -> &'static str {
+        TRAVERSALS[self as usize].0
+    }
 }
 
 /// The choices of a profile.
@@ -168,6 +182,12 @@ mod tests {
         assert_eq!(profile.choices().work_group("step2a"), [64, 1]);
         assert_eq!(with_choice("traversal", "\"stackless\"").unwrap().choices().traversal(), Traversal::Stackless);
         assert_eq!(with_choice("memory_path", "\"images\"").unwrap().choices().memory_path(), MemoryPath::Images);
+    }
+
+    #[test]
+    fn words_are_those_of_the_files() {
+        assert!(MEMORY_PATHS.iter().all(|(name, value)| value.name() == *name));
+        assert!(TRAVERSALS.iter().all(|(name, value)| value.name() == *name));
     }
 
     #[test]

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! The quick self-test at a driver's first use: who fails is refused, and nobody is tested twice.
+#![allow(clippy::unwrap_used, missing_docs)]
+
+use std::path::{Path, PathBuf};
+
+use rarefy::kernels::Mutation;
+use rarefy::opencl::{CacheFolder, OpenOptions, Profile};
+use rarefy::options::RenderOptions;
+use rarefy::quick_test::{self, Known};
+use rarefy::renderer::{DeviceChoice, Keep, Renderer, RendererOptions};
+use rarefy::stage::Stage;
+use rarefy::{Error, builtin, selftest};
+use rarefy_host_tests::frames::{Prepared, no_opencl};
+
+const OPENCL: DeviceChoice = DeviceChoice::OpenCl(None);
+
+fn options(device: DeviceChoice, cache: &Path, mutation: Option<Mutation>) -> RendererOptions {
+    RendererOptions { device, cache: CacheFolder::At(cache.into()), mutation, ..RendererOptions::default() }
+}
+
+fn renderer(options: &RendererOptions) -> rarefy::Result<Renderer> {
+    Renderer::new(builtin::to_scene("spheres").unwrap(), options, &|_, _| ())
+}
+
+fn verdicts(cache: &Path) -> Vec<PathBuf> {
+    let files = std::fs::read_dir(cache).unwrap().map(|file| file.unwrap().path());
+    files.filter(|path| path.extension().is_some_and(|suffix| suffix == "verdict")).collect()
+}
+
+/// Tests a device opened for `prepared` with a cache in `cache`.
+fn check(prepared: &Prepared, cache: &Path, profile: Option<&Profile>) -> rarefy::Result<Known> {
+    let open =
+        OpenOptions { cache: CacheFolder::At(cache.into()), profile: profile.cloned(), ..OpenOptions::default() };
+    quick_test::check(&mut prepared.device(false, &open), profile)
+}
+
+#[test]
+fn a_device_is_tested_once() {
+    if no_opencl() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let prepared = Prepared::named("spheres");
+    assert_eq!(check(&prepared, folder.path(), None).unwrap(), Known::Tested);
+    assert_eq!(check(&prepared, folder.path(), None).unwrap(), Known::FromCache);
+    let entry = verdicts(folder.path()).remove(0);
+    let sound = std::fs::read(&entry).unwrap();
+    // A damaged entry only causes a new run, which mends it.
+    for damaged in [sound[..sound.len() - 1].to_vec(), Vec::new(), [&sound[..], b"!"].concat()] {
+        std::fs::write(&entry, damaged).unwrap();
+        assert_eq!(check(&prepared, folder.path(), None).unwrap(), Known::Tested);
+        assert_eq!(check(&prepared, folder.path(), None).unwrap(), Known::FromCache);
+        assert_eq!(std::fs::read(&entry).unwrap(), sound);
+    }
+    // Another profile is another device.
+    let phone = Profile::named("adreno-420").unwrap();
+    assert_eq!(check(&prepared, folder.path(), Some(&phone)).unwrap(), Known::Tested);
+    assert_eq!(check(&prepared, folder.path(), Some(&phone)).unwrap(), Known::FromCache);
+    assert_eq!(verdicts(folder.path()).len(), 2);
+    // So is another build of the kernels.
+    let open = OpenOptions { cache: CacheFolder::At(folder.path().into()), ..OpenOptions::default() };
+    assert_eq!(quick_test::check(&mut prepared.device(true, &open), None).unwrap(), Known::Tested);
+}
+
+#[test]
+fn a_renderer_leaves_a_verdict_and_draws_its_own_scene() {
+    if no_opencl() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let frame = RenderOptions { width: 64, height: 48, ..RenderOptions::default() };
+    let scene = || builtin::to_scene("cafe").unwrap();
+    let mut pictures = Vec::new();
+    for _ in 0..2 {
+        let mut renderer = Renderer::new(scene(), &options(OPENCL, folder.path(), None), &|_, _| ()).unwrap();
+        assert!(renderer.notices().is_empty());
+        pictures.push((renderer.render(&frame, Keep::default()).unwrap().pixels, renderer.peak_device_bytes()));
+    }
+    assert_eq!(verdicts(folder.path()).len(), 1);
+    // The test leaves no traces: not in the picture, not in the account of memory.
+    assert_eq!(pictures[0], pictures[1]);
+}
+
+#[test]
+fn a_broken_kernel_is_refused_by_name() {
+    refused_by_name(&[Stage::Step1, Stage::Step4]);
+}
+
+#[test]
+#[ignore = "long: a program per stage"]
+fn any_broken_kernel_is_refused_by_name() {
+    refused_by_name(&Stage::ALL);
+}
+
+fn refused_by_name(stages: &[Stage]) {
+    if no_opencl() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    for &stage in stages {
+        let broken = options(OPENCL, folder.path(), Some(selftest::breaking_mutation(stage)));
+        let refusal = |start: &str| match renderer(&broken).err() {
+            Some(error @ Error::SelfTest { .. }) => error.to_string(),
+            Some(error) => panic!("{start} of {}: {error}", stage.name()),
+            None => panic!("{start} of {}: not refused", stage.name()),
+        };
+        let first = refusal("first start");
+        assert!(first.contains(&format!(": {}", stage.name())), "{first}");
+        assert!(first.contains("driver "), "{first}");
+        println!("{first}");
+        assert_eq!(refusal("second start"), first, "the verdict is kept");
+    }
+    assert_eq!(verdicts(folder.path()).len(), stages.len());
+}
+
+#[test]
+fn auto_falls_back_with_a_notice() {
+    if no_opencl() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let broken = options(DeviceChoice::Auto, folder.path(), Some(selftest::breaking_mutation(Stage::Step2b)));
+    for _ in 0..2 {
+        let mut fallen = renderer(&broken).unwrap();
+        assert_eq!(fallen.info().backend, "cpu");
+        let notices = fallen.notices().to_vec();
+        assert_eq!(notices.len(), 1, "{notices:?}");
+        assert!(notices[0].starts_with("drawing on the CPU twin: self-test failed on "), "{notices:?}");
+        assert!(notices[0].contains("step2b"), "{notices:?}");
+        assert_eq!(verdicts(folder.path()).len(), 1);
+    }
+    // A program that does not even build.
+    let mutation = Mutation { file: "step2b.cl".into(), from: "__kernel".into(), to: "__colonel".into() };
+    let mut fallen = renderer(&options(DeviceChoice::Auto, folder.path(), Some(mutation.clone()))).unwrap();
+    assert_eq!(fallen.info().backend, "cpu");
+    assert!(fallen.notices()[0].contains("`step2b` does not build"), "{:?}", fallen.notices());
+    let refused = renderer(&options(OPENCL, folder.path(), Some(mutation))).err();
+    assert!(matches!(refused, Some(Error::KernelBuild { .. })), "{refused:?}");
+    // Only verdicts are kept, and an intact device is none the worse.
+    assert_eq!(verdicts(folder.path()).len(), 1);
+    let mut sound = renderer(&options(DeviceChoice::Auto, folder.path(), None)).unwrap();
+    assert_eq!((sound.info().backend, sound.notices().len()), ("opencl", 0));
+}
