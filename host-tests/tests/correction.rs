@@ -58,17 +58,18 @@ impl Planes {
             && self.differ(from, to, shadows)
     }
 
-    /// Do the three pixels on the far side of `from` show what it shows?
+    /// Do the three pixels on the far side of `from`, and one beside it, show what it shows?
     fn is_thick(&self, from: usize, to: usize, shadows: bool) -> bool {
         let (width, height) = (self.width as isize, (self.class.len() / self.width) as isize);
         let at = |pixel: usize| (pixel as isize % width, pixel as isize / width);
         let ((x, y), (nx, ny)) = (at(from), at(to));
-        (-1..=1).all(|k| {
-            let (bx, by) = (2 * x - nx + k * (ny - y), 2 * y - ny + k * (nx - x));
+        let fills = |back: isize, along: isize| {
+            let (bx, by) = (x - back * (nx - x) + along * (ny - y), y - back * (ny - y) + along * (nx - x));
             (0..width).contains(&bx)
                 && (0..height).contains(&by)
                 && !self.differ(from, (by * width + bx) as usize, shadows)
-        })
+        };
+        (-1..=1).all(|along| fills(1, along)) && (fills(0, -1) || fills(0, 1))
     }
 
     fn fired(&self) -> Vec<usize> {

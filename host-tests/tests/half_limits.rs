@@ -15,7 +15,7 @@ use rarefy_host_tests::frames::{Prepared, no_opencl};
 const SCENE: &str = "spheres";
 
 fn frame() -> RenderOptions {
-    RenderOptions { width: 125, height: 93, ..RenderOptions::default() }
+    RenderOptions { width: 205, height: 153, ..RenderOptions::default() }
 }
 
 /// A profile of these entries in `limits`, `hardware` or `choices`.
