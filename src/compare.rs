@@ -7,6 +7,7 @@ use crate::layout::*;
 use crate::metrics::{self, Quality, Rgb8, WrongPixels};
 use crate::options::{Mode, RenderOptions};
 use crate::renderer::Renderer;
+use crate::wave_model::{StageCost, WaveModel, stage_costs};
 
 /// Side of the frames that only build programs, in pixels.
 const WARM_UP_SIDE: u32 = 16;
@@ -138,6 +139,17 @@ pub fn compare(
         full_picture,
         adaptive_frame: adaptive,
     })
+}
+
+/// Models full and adaptive frames in lock-step waves.
+///
+/// # Errors
+/// Whatever drawing reports; a frame that does not fit into memory at once.
+pub fn wave_model(renderer: &mut Renderer, options: &RenderOptions) -> Result<WaveModel> {
+    let mut stages = |mode| -> Result<Vec<StageCost>> {
+        Ok(stage_costs(&renderer.launch_costs(&RenderOptions { mode, ..options.clone() })?))
+    };
+    Ok(WaveModel { full: stages(Mode::Full)?, adaptive: stages(Mode::Adaptive)? })
 }
 
 /// The times of all rounds.

@@ -48,6 +48,7 @@ pub mod scene_buffers;
 pub mod selftest;
 pub mod stage;
 pub mod twin;
+pub mod wave_model;
 
 pub use error::{Error, Result};
 pub use scene::Scene;

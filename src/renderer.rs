@@ -5,6 +5,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use crate::backend::opencl::OpenClBackend;
+use crate::backend::recording::RecordingBackend;
 use crate::backend::twin::TwinBackend;
 use crate::backend::{Backend, BackendInfo, FrameBuffer};
 use crate::bands::{self, Collected, CounterSums, Plan, Room};
@@ -26,6 +27,7 @@ use crate::scene::{Scene, View};
 use crate::scene_buffers::{SceneBuffers, Shading};
 use crate::stage::Stage;
 use crate::twin::planes::plane_index;
+use crate::wave_model::{self, LaunchCost};
 
 /// Which device draws.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -220,6 +222,39 @@ impl Renderer {
         }
         self.last_frame = Some(LastFrame { keep, planes });
         Ok(Frame { width: options.width, height: options.height, pixels, stats })
+    }
+
+    /// Draws a frame with counters and returns what each of its launches costs, lane by lane.
+    ///
+    /// # Errors
+    /// As for [`Renderer::render`]; a frame that does not fit into memory at once.
+    pub fn launch_costs(&mut self, options: &RenderOptions) -> Result<Vec<LaunchCost>> {
+        options.validate()?;
+        let full = options.mode == Mode::Full;
+        let block = if full { 1 } else { options.block };
+        let (width, height) = options.sample_size();
+        let params = frame_params(&self.view, &self.buffers, width, height, block, options.depth);
+        let plan = Plan::new(&params, &self.room(!full, true), None)?;
+        if !plan.is_one_window() {
+            return Err(Error::LimitExceeded {
+                what: "the wave model".into(),
+                limit: "--memory-budget".into(),
+                wanted: format!("all {height} rows of samples in memory"),
+                allowed: format!("{} rows", plan.rows()),
+                remedy: "choose a smaller --size or a larger --memory-budget".into(),
+            });
+        }
+        self.last_frame = None;
+        let backend = self.device.backend();
+        backend.begin(&params, &plan.sizes)?;
+        let mut recording = RecordingBackend::new(backend);
+        if full {
+            pipeline::full_frame(&mut recording, &params, false)?;
+        } else {
+            pipeline::adaptive_frame(&mut recording, &params, options, self.view.extent)?;
+        }
+        let launches = recording.launches;
+        wave_model::launch_costs(backend, &params, &launches)
     }
 
     /// An attribute plane (`PLANE_*`) of the last frame, row-major, one word a sample.

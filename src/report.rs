@@ -8,6 +8,7 @@ use crate::frame::{Frame, FrameStats};
 use crate::options::{Mode, RenderOptions, Test};
 use crate::renderer::{BuildTimes, Renderer};
 use crate::stage::Stage;
+use crate::wave_model::{StageCost, WAVES, WaveModel};
 
 /// The statistics of one frame: what `rarefy render --json` writes.
 pub fn render_json(renderer: &mut Renderer, options: &RenderOptions, frame: &Frame, load_ms: f64) -> Value {
@@ -47,6 +48,31 @@ pub fn compare_json(renderer: &mut Renderer, options: &RenderOptions, comparison
     ];
     object.extend(entries.map(|(key, value)| (key.to_owned(), value)));
     Value::Object(object)
+}
+
+/// The wave model: what `rarefy compare --wave-model --json` adds under `wave_model`.
+pub fn wave_model_json(model: &WaveModel) -> Value {
+    let by_wave = |value: &dyn Fn(usize) -> f64| -> Value {
+        WAVES.iter().enumerate().map(|(at, wave)| (wave.to_string(), number(value(at)))).collect::<Map<_, _>>().into()
+    };
+    let stages = |stages: &[StageCost]| -> Value {
+        let stage = |cost: &StageCost| {
+            let figures = json!({
+                "launches": cost.launches,
+                "round_trips": cost.round_trips,
+                "lane_steps": number(cost.lanes),
+                "wave_steps": by_wave(&|wave| cost.waves[wave]),
+                "divergence": by_wave(&|wave| cost.divergence(wave))
+            });
+            (cost.stage.name().to_owned(), figures)
+        };
+        stages.iter().map(stage).collect::<Map<_, _>>().into()
+    };
+    json!({
+        "speedup": by_wave(&|wave| model.speedup(wave)),
+        "full": stages(&model.full),
+        "adaptive": stages(&model.adaptive)
+    })
 }
 
 fn number(value: f64) -> Value {

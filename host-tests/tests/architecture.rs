@@ -20,6 +20,7 @@ const LAYERS: &[&[&str]] = &[
     &["pipeline"],
     &["frame", "fallback", "quick_test"],
     &["bands"],
+    &["wave_model"],
     &["renderer"],
     &["compare", "layers", "report", "selftest"],
 ];

@@ -3,6 +3,7 @@
 
 pub mod opencl;
 pub mod parity;
+pub mod recording;
 pub mod twin;
 
 use crate::error::Result;

@@ -350,6 +350,9 @@ pub struct CompareArgs {
     /// Folder for full.png, adaptive.png, difference.png, class.png and fail-mask.png.
     #[arg(short, long)]
     pub output: Option<PathBuf>,
+    /// Also model what lock-step waves of 32, 64 and 128 lanes pay for both ways of drawing.
+    #[arg(long)]
+    pub wave_model: bool,
 }
 
 /// `rarefy diff`.

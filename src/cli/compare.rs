@@ -3,13 +3,14 @@
 
 use std::path::Path;
 
-use rarefy::compare::{Comparison, compare};
+use rarefy::compare::{Comparison, compare, wave_model};
 use rarefy::layers;
 use rarefy::metrics::{CUSTOMARY_GAIN, Rgb8, difference_picture};
 use rarefy::options::{Mode, RenderOptions};
 use rarefy::picture::write_png;
 use rarefy::renderer::Renderer;
 use rarefy::stage::Stage;
+use rarefy::wave_model::{StageCost, WAVES, WaveModel};
 use rarefy::{Error, Result, report};
 
 use super::args::CompareArgs;
@@ -31,8 +32,12 @@ pub fn run(args: &CompareArgs) -> Result<()> {
     let comparison = compare(&mut renderer, &options, args.frames, &|share| progress.update("frames", share));
     progress.clear();
     let comparison = comparison?;
+    let waves = if args.wave_model { Some(wave_model(&mut renderer, &options)?) } else { None };
     let json = args.draw.json.as_deref();
     for line in table(&mut renderer, &options, &comparison) {
+        say(json, &line);
+    }
+    for line in waves.iter().flat_map(wave_table) {
         say(json, &line);
     }
     if let Some(folder) = &args.output {
@@ -41,7 +46,13 @@ pub fn run(args: &CompareArgs) -> Result<()> {
         }
     }
     match json {
-        Some(path) => write_json(path, &report::compare_json(&mut renderer, &options, &comparison, load_ms)),
+        Some(path) => {
+            let mut report = report::compare_json(&mut renderer, &options, &comparison, load_ms);
+            if let (Some(model), Some(object)) = (&waves, report.as_object_mut()) {
+                object.insert("wave_model".into(), report::wave_model_json(model));
+            }
+            write_json(path, &report)
+        }
         None => Ok(()),
     }
 }
@@ -97,6 +108,22 @@ fn table(renderer: &mut Renderer, options: &RenderOptions, c: &Comparison) -> Ve
     ];
     let stages = Stage::ALL.map(|s| format!("{} {:.1}", s.name(), c.adaptive.stages_ms[s as usize])).join("  ");
     lines.push(format!("  stages/ms  {stages}  other {:.1}", c.adaptive.other_ms()));
+    lines
+}
+
+/// Divergence by stage and the modelled speedup, for each size of waves.
+fn wave_table(model: &WaveModel) -> Vec<String> {
+    let row = |name: &str, cost: &StageCost| {
+        let share = |wave| format!("{:>13.1} {:>10.2}", cost.cost(wave) / 1e6, cost.divergence(wave));
+        format!("  {name:15}{}{}{}", share(0), share(1), share(2))
+    };
+    let heads = WAVES.map(|wave| format!("{:>13} {:>10}", format!("{wave}: cost/M"), "divergence")).concat();
+    let mut lines = vec!["  waves of lanes in lock step (traversal steps; launches included)".to_owned()];
+    lines.push(format!("  {:15}{heads}", "stage"));
+    lines.extend(model.full.iter().map(|cost| row("full step1", cost)));
+    lines.extend(model.adaptive.iter().map(|cost| row(cost.stage.name(), cost)));
+    let speedups = [0, 1, 2].map(|wave| format!("{:>13.2} {:>10}", model.speedup(wave), "")).concat();
+    lines.push(format!("  {:15}{}", "speedup", speedups.trim_end()));
     lines
 }
 

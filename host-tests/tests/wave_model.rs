@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! The wave model says the same of a frame on every back end, and profiles do not change the picture.
+#![allow(clippy::unwrap_used, missing_docs)]
+
+use rarefy::builtin;
+use rarefy::compare::wave_model;
+use rarefy::options::{Mode, RenderOptions};
+use rarefy::profiles::Profile;
+use rarefy::renderer::{DeviceChoice, Keep, Renderer, RendererOptions};
+use rarefy::stage::Stage;
+use rarefy_host_tests::frames::no_opencl;
+
+fn renderer(device: DeviceChoice, profile: Option<Profile>) -> Renderer {
+    let options = RendererOptions { device, profile, strict: true, ..RendererOptions::default() };
+    Renderer::new(builtin::to_scene("spheres").unwrap(), &options, &|_, _| {}).unwrap()
+}
+
+fn options() -> RenderOptions {
+    RenderOptions { width: 120, height: 90, ..RenderOptions::default() }
+}
+
+#[test]
+fn both_back_ends_and_profiles_agree() {
+    let mut twin = renderer(DeviceChoice::Cpu, None);
+    let expected = wave_model(&mut twin, &options()).unwrap();
+    let picture = twin.render_exactly(&options(), Keep::default()).unwrap().pixels;
+    assert_eq!(expected.full.len(), 1);
+    assert_eq!(expected.adaptive.len(), Stage::ALL.len());
+    // What the counters say must be in the sum: the lanes' steps are at least the traversal steps of the frame.
+    let full = RenderOptions { mode: Mode::Full, ..options() };
+    let work = twin.render_exactly(&full, Keep::COUNTERS).unwrap().stats.work.unwrap();
+    assert!(expected.full[0].lanes > (work.traversal_steps + work.triangle_tests) as f64);
+    for cost in expected.full.iter().chain(&expected.adaptive) {
+        assert!((0..3).all(|wave| cost.divergence(wave) >= 0.999), "{cost:?}");
+    }
+    if no_opencl() {
+        return;
+    }
+    for profile in [None, Some(Profile::named("adreno-420").unwrap())] {
+        let mut device = renderer(DeviceChoice::OpenCl(None), profile);
+        assert_eq!(wave_model(&mut device, &options()).unwrap(), expected);
+        assert!(device.render_exactly(&options(), Keep::default()).unwrap().pixels == picture);
+    }
+    // Negative control: another frame is another model.
+    let other = RenderOptions { correction: rarefy::options::Correction::Off, ..options() };
+    assert_ne!(wave_model(&mut twin, &other).unwrap(), expected);
+}
+
+#[test]
+fn a_frame_in_bands_has_no_model() {
+    let limited =
+        RendererOptions { device: DeviceChoice::Cpu, memory_budget_bytes: Some(2 << 20), ..RendererOptions::default() };
+    let mut renderer = Renderer::new(builtin::to_scene("spheres").unwrap(), &limited, &|_, _| {}).unwrap();
+    let large = RenderOptions { width: 500, height: 400, ..RenderOptions::default() };
+    let error = wave_model(&mut renderer, &large).unwrap_err().to_string();
+    assert!(error.contains("wave model") && error.contains("--memory-budget"), "{error}");
+}

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! A back end that passes everything on and remembers the launches.
+
+use super::{Backend, BackendInfo, BufferSizes, FrameBuffer, MemoryLimits};
+use crate::error::Result;
+use crate::layout::{FrameParams, StepParams};
+use crate::stage::Kernel;
+
+/// Records the launches of a frame.
+pub struct RecordingBackend<'a> {
+    inner: &'a mut dyn Backend,
+    /// The launches so far, in order.
+    pub launches: Vec<(Kernel, StepParams)>,
+}
+
+impl<'a> RecordingBackend<'a> {
+    /// Passes calls on to `inner`.
+    pub fn new(inner: &'a mut dyn Backend) -> Self {
+        RecordingBackend { inner, launches: Vec::new() }
+    }
+}
+
+impl Backend for RecordingBackend<'_> {
+    fn info(&self) -> BackendInfo {
+        self.inner.info()
+    }
+
+    fn scan_group(&self) -> u32 {
+        self.inner.scan_group()
+    }
+
+    fn memory_limits(&self) -> MemoryLimits {
+        self.inner.memory_limits()
+    }
+
+    fn begin(&mut self, frame: &FrameParams, sizes: &BufferSizes) -> Result<()> {
+        self.inner.begin(frame, sizes)
+    }
+
+    fn run(&mut self, kernel: Kernel, step: &StepParams) -> Result<()> {
+        self.launches.push((kernel, *step));
+        self.inner.run(kernel, step)
+    }
+
+    fn read_sum(&mut self, at: u32) -> Result<u32> {
+        self.inner.read_sum(at)
+    }
+
+    fn read(&mut self, buffer: FrameBuffer, range: std::ops::Range<usize>) -> Result<Vec<u32>> {
+        self.inner.read(buffer, range)
+    }
+
+    fn write(&mut self, buffer: FrameBuffer, words: &[u32]) -> Result<()> {
+        self.inner.write(buffer, words)
+    }
+
+    fn take_timings(&mut self) -> Result<Vec<(Kernel, f64)>> {
+        self.inner.take_timings()
+    }
+
+    fn peak_bytes(&self) -> u64 {
+        self.inner.peak_bytes()
+    }
+}
