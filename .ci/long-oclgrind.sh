@@ -1,0 +1,31 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT OR Apache-2.0
+# Oclgrind: every kernel interpreted, with checks for data races and accesses beyond buffers, and a phone's limits
+set -euo pipefail
+cd "$(dirname "$0")/.."
+. .ci/lib.sh
+
+runtime=/usr/lib/oclgrind/liboclgrind-rt-icd.so
+[ -e "$runtime" ] || need_packages "the Oclgrind tests" oclgrind || fail "the Oclgrind tests need oclgrind"
+[ -e "$runtime" ] || runtime=$(find / -xdev -name liboclgrind-rt-icd.so -print -quit 2>/dev/null)
+[ -n "$runtime" ] || fail "oclgrind has no ICD library here"
+
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+mkdir "$scratch/icd"
+echo "$runtime" >"$scratch/icd/oclgrind.icd"
+export OCL_ICD_VENDORS=$scratch/icd
+# Its check for uninitialised reads is off: see docs/implementations.md.
+export OCLGRIND_DATA_RACES=1
+# Optimised kernels use an LLVM intrinsic (copysign) that Oclgrind 21.10 cannot interpret.
+export OCLGRIND_BUILD_OPTIONS=-cl-opt-disable
+# The limits of an Adreno 420.
+export OCLGRIND_MAX_WGSIZE=1024 OCLGRIND_LOCAL_MEM_SIZE=32768 OCLGRIND_CONSTANT_MEM_SIZE=65536
+export OCLGRIND_GLOBAL_MEM_SIZE=1073741824
+
+# One process a test: Oclgrind opens its log once.
+for test in no_kernel_races_or_leaves_its_buffers a_racing_kernel_is_found; do
+    export OCLGRIND_LOG=$scratch/$test.log RAREFY_OCLGRIND_LOG=$scratch/$test.log
+    rm -rf target/tmp/oclgrind
+    cargo test --quiet --package rarefy-host-tests --test oclgrind -- --ignored --exact --nocapture "$test"
+done

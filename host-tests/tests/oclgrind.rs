@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Every kernel under Oclgrind, an OpenCL device that interprets kernels and watches for data races
+//! and accesses beyond buffers. `.ci/long-oclgrind.sh` sets the environment and runs these; without it
+//! they do nothing.
+#![allow(clippy::unwrap_used, missing_docs)]
+
+use std::path::{Path, PathBuf};
+
+use rarefy::builtin;
+use rarefy::kernels::Mutation;
+use rarefy::opencl::CacheFolder;
+use rarefy::options::{CorrectionMethod, Mode, RenderOptions};
+use rarefy::renderer::{DeviceChoice, Keep, Renderer, RendererOptions};
+
+/// Where Oclgrind writes what it finds; `None` outside of its script.
+fn log() -> Option<PathBuf> {
+    let log = std::env::var_os("RAREFY_OCLGRIND_LOG").map(PathBuf::from);
+    if log.is_none() {
+        println!("skipped: run by .ci/long-oclgrind.sh");
+    }
+    log
+}
+
+fn findings(log: &Path) -> String {
+    std::fs::read_to_string(log).unwrap_or_default()
+}
+
+fn renderer(device: DeviceChoice, mutation: Option<Mutation>) -> Renderer {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("oclgrind");
+    let cache = CacheFolder::At(folder);
+    let options = RendererOptions { device, strict: true, mutation, cache, ..RendererOptions::default() };
+    Renderer::new(builtin::to_scene("rods").unwrap(), &options, &|_, _| {}).unwrap()
+}
+
+#[test]
+#[ignore = "oclgrind: every kernel, interpreted"]
+fn no_kernel_races_or_leaves_its_buffers() {
+    let Some(log) = log() else { return };
+    let (mut device, mut twin) = (renderer(DeviceChoice::OpenCl(None), None), renderer(DeviceChoice::Cpu, None));
+    assert!(device.info().name.contains("Oclgrind"), "{:?}", device.info());
+    let base = RenderOptions { width: 26, height: 19, ..RenderOptions::default() };
+    let frames = [
+        base.clone(),
+        RenderOptions { mode: Mode::Full, ..base.clone() },
+        RenderOptions { block: 4, ..base.clone() },
+        RenderOptions { correction_method: CorrectionMethod::Sweeps, ..base.clone() },
+        RenderOptions { band_rows: Some(6), samples: 2, width: 13, height: 10, ..base },
+    ];
+    for options in &frames {
+        for keep in [Keep::default(), Keep::COUNTERS] {
+            let (drawn, expected) = (device.render_exactly(options, keep), twin.render_exactly(options, keep));
+            let (drawn, expected) = (drawn.unwrap(), expected.unwrap());
+            assert!(drawn.pixels == expected.pixels, "{options:?}: another picture than the twin's");
+            assert_eq!(drawn.stats.pixels, expected.stats.pixels);
+        }
+    }
+    // The quick self-test ran too: it launches what these frames do on a larger picture.
+    assert_eq!(findings(&log), "", "Oclgrind found something");
+    println!("Oclgrind: {} frames, every kernel, no finding", 2 * frames.len());
+}
+
+#[test]
+#[ignore = "oclgrind: a racing kernel, which must be found"]
+fn a_racing_kernel_is_found() {
+    let Some(log) = log() else { return };
+    // All chunks write the same sum.
+    let mutation = Mutation {
+        file: "common/pack.clh".into(),
+        from: "out_sums[chunk] = popcount(mask);".into(),
+        to: "out_sums[0] = popcount(mask);".into(),
+    };
+    let folder = CacheFolder::At(Path::new(env!("CARGO_TARGET_TMPDIR")).join("oclgrind"));
+    let options = RendererOptions {
+        device: DeviceChoice::OpenCl(None),
+        mutation: Some(mutation),
+        cache: folder,
+        ..RendererOptions::default()
+    };
+    let options_frame = RenderOptions { width: 64, height: 48, ..RenderOptions::default() };
+    // The quick self-test may refuse the device before; by then the race has happened.
+    if let Ok(mut renderer) = Renderer::new(builtin::to_scene("rods").unwrap(), &options, &|_, _| {}) {
+        let _ = renderer.render_exactly(&options_frame, Keep::default());
+    }
+    let found = findings(&log);
+    assert!(found.contains("race"), "Oclgrind saw no race: {found}");
+}
