@@ -7,7 +7,8 @@
 //
 // `converged`: rounds of mark, count, scan, scatter, trace until no pixel is listed. A round looks only at the
 // neighbours of the pixels that the last round traced, so the fired set is the least fixed point of the rule, the same
-// for any order. `sweeps`: the paper's one round, each row there and back, then each column (step4_sweep).
+// for any order. The last rounds have few sources and are many: step4_tail does up to TAIL_ROUNDS of them in one launch
+// of one work-group. `sweeps`: the paper's one round, each row there and back, then each column (step4_sweep).
 // Inputs: frame, scene, attribute planes, list entries [source_offset ..). Outputs: attribute planes, class CORRECTED
 // (changed) or CONFIRMED, colour, list entries from list_offset on.
 // Invariant: only INTERPOLATED pixels are written, each once. Cost: 4 class words and up to 7 attribute vectors per
@@ -82,15 +83,19 @@ static inline bool claimed_by(__constant FrameParams *frame, const StepParams *s
 #define PACK_PIXEL(i) neighbour(frame, &step, list, i)
 
 // Several sources may want the same neighbour: the lowest item claims it.
+static void mark_item(__constant FrameParams *frame, const StepParams *step, __global uint *attributes,
+                      __global const uint *list, __global const uint *color, uint i) {
+  const uint pixel = neighbour(frame, step, list, i);
+  if (pixel == NO_PIXEL) return;
+  const uint source = list[step->source_offset + (i >> 2)];
+  if (spreads(frame, step, attributes, color, source & 0xffffu, source >> 16, pixel & 0xffffu, pixel >> 16))
+    atomic_min(attributes + PLANE_CLAIM * frame->plane_pitch + pixel_plane_index(frame, pixel), i);
+}
+
 __kernel void step4_mark(__constant FrameParams *frame, const StepParams step, __global uint *attributes,
                          __global const uint *list, __global const uint *color) {
   const uint i = get_global_id(0);
-  if (i >= step.item_count) return;
-  const uint pixel = neighbour(frame, &step, list, i);
-  if (pixel == NO_PIXEL) return;
-  const uint source = list[step.source_offset + (i >> 2)];
-  if (spreads(frame, &step, attributes, color, source & 0xffffu, source >> 16, pixel & 0xffffu, pixel >> 16))
-    atomic_min(attributes + PLANE_CLAIM * frame->plane_pitch + pixel_plane_index(frame, pixel), i);
+  if (i < step.item_count) mark_item(frame, &step, attributes, list, color, i);
 }
 
 __kernel void step4_count(__constant FrameParams *frame, const StepParams step, __global const uint *attributes,
@@ -111,19 +116,61 @@ __kernel void step4_scatter(__constant FrameParams *frame, const StepParams step
 
 // A pixel outside of the interior belongs to another window, which traces it; with STEP_SETTLE all listed pixels had
 // their rays when this window was drawn before. Such a pixel is only taken out of the game: it neither fires nor spreads.
-__kernel void step4_trace(SCENE_PARAMS, const StepParams step, __global const uint *list,
-                          __global uint *out_attributes, __global uint *out_color, __global uint *out_counters) {
-  const uint item = get_global_id(0);
-  if (item >= step.item_count) return;
-  const uint pixel = list[step.list_offset + item], y = pixel >> 16;
+static void trace_item(SCENE_PARAMS, const StepParams *step, __global const uint *list, __global uint *out_attributes,
+                       __global uint *out_color, __global uint *out_counters, uint item) {
+  const uint pixel = list[step->list_offset + item], y = pixel >> 16;
   const uint at = PLANE_CLASS * frame->plane_pitch + pixel_plane_index(frame, pixel);
   // A pixel that two windows fire at may be listed twice.
   if ((out_attributes[at] & CLASS_MASK) != CLASS_INTERPOLATED) return;
-  if ((step.flags & STEP_SETTLE) || y < frame->interior_begin || y >= frame->interior_end) {
+  if ((step->flags & STEP_SETTLE) || y < frame->interior_begin || y >= frame->interior_end) {
     out_attributes[at] = (out_attributes[at] & ~CLASS_MASK) | CLASS_CONFIRMED;
     return;
   }
-  trace_pixel(SCENE_ARGS, pixel & 0xffffu, y, CLASS_CORRECTED, &step, out_attributes, out_color, out_counters);
+  trace_pixel(SCENE_ARGS, pixel & 0xffffu, y, CLASS_CORRECTED, step, out_attributes, out_color, out_counters);
+}
+
+__kernel void step4_trace(SCENE_PARAMS, const StepParams step, __global const uint *list,
+                          __global uint *out_attributes, __global uint *out_color, __global uint *out_counters) {
+  const uint item = get_global_id(0);
+  if (item < step.item_count)
+    trace_item(SCENE_ARGS, &step, list, out_attributes, out_color, out_counters, item);
+}
+
+// Whole rounds by one work-group, until none is wanted, one wants more than TAIL_SOURCES, or TAIL_ROUNDS are done. Lists
+// what the other kernels would list, in their order. Leaves in the sums where the next round's sources begin and end,
+// how many rounds there were, and where the list ended after each.
+__kernel void step4_tail(SCENE_PARAMS, const StepParams step, __global uint *attributes, __global uint *out_color,
+                         __global uint *out_counters, __global uint *list, __global uint *out_sums,
+                         __local uint *scratch) {
+  const uint lane = get_local_id(0), lanes = get_local_size(0);
+  StepParams round = step;
+  uint rounds = 0u;
+  for (; rounds < TAIL_ROUNDS && round.item_count != 0u && round.item_count <= 4u * TAIL_SOURCES; ++rounds) {
+    for (uint i = lane; i < round.item_count; i += lanes) mark_item(frame, &round, attributes, list, out_color, i);
+    barrier(CLK_GLOBAL_MEM_FENCE);
+    // A lane's items are consecutive, so that the list keeps the order of the items.
+    const uint share = (round.item_count + lanes - 1u) / lanes;
+    const uint begin = lane * share, end = min(begin + share, round.item_count);
+    uint wanted = 0u, total;
+    for (uint i = begin; i < end; ++i) wanted += claimed_by(frame, &round, attributes, list, i) ? 1u : 0u;
+    uint next = round.list_offset + inclusive_prefix(wanted, scratch, &total) - wanted;
+    for (uint i = begin; i < end; ++i) {
+      if (claimed_by(frame, &round, attributes, list, i)) list[next++] = neighbour(frame, &round, list, i);
+    }
+    barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE);
+    for (uint item = lane; item < total; item += lanes)
+      trace_item(SCENE_ARGS, &round, list, attributes, out_color, out_counters, item);
+    barrier(CLK_GLOBAL_MEM_FENCE);
+    round.source_offset = round.list_offset;
+    round.list_offset += total;
+    round.item_count = 4u * total;
+    if (lane == 0u) out_sums[TAIL_SUM_ENDS + rounds] = round.list_offset;
+  }
+  if (lane == 0u) {
+    out_sums[TAIL_SUM_SOURCES] = round.source_offset;
+    out_sums[TAIL_SUM_LIST] = round.list_offset;
+    out_sums[TAIL_SUM_ROUNDS] = rounds;
+  }
 }
 
 // One work-item walks one line of a frame that is one window there and back: rows if step_x is 1, columns if step_y is 1.

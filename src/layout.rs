@@ -113,6 +113,19 @@ shared_constants! {
     /// Step flag: texture coordinates are compared and interpolated the shorter way around.
     STEP_UNWRAP = 256;
 
+    /// A round of step4 with at most this many sources is left to step4_tail: a wave's worth.
+    TAIL_SOURCES = 64;
+    /// Rounds in one launch of step4_tail; what it takes must stay below a slice.
+    TAIL_ROUNDS = 16;
+    /// What step4_tail leaves in the sums buffer: the first list entry of the next round's sources.
+    TAIL_SUM_SOURCES = 0;
+    /// The end of the list.
+    TAIL_SUM_LIST = 1;
+    /// How many rounds it did.
+    TAIL_SUM_ROUNDS = 2;
+    /// From here on, the end of the list after each round.
+    TAIL_SUM_ENDS = 3;
+
     /// Surface kind: diffuse and highlight only.
     SURFACE_OPAQUE = 0;
     /// Surface kind: mirror.

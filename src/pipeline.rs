@@ -309,8 +309,11 @@ fn correct_converged(backend: &mut dyn Backend, step: &StepParams, given: &Given
     let mut source_offset = listed;
     while list_offset > source_offset {
         let sources = list_offset - source_offset;
-        let count = fire_from(backend, step, source_offset, sources, list_offset)?;
-        (source_offset, list_offset) = (list_offset, list_offset + count);
+        (source_offset, list_offset) = if sources <= TAIL_SOURCES {
+            follow_tail(backend, step, source_offset, sources, list_offset)?
+        } else {
+            (list_offset, list_offset + fire_from(backend, step, source_offset, sources, list_offset)?)
+        };
     }
     Ok(list_offset - listed)
 }
@@ -331,6 +334,22 @@ fn fire_from(
     let count = pack(backend, &STEP4, &round)?;
     run_list(backend, Kernel::Step4Trace, &StepParams { item_count: count, ..round })?;
     Ok(count)
+}
+
+/// Rounds of few sources in one launch; returns where the next round's sources begin and end.
+fn follow_tail(
+    backend: &mut dyn Backend,
+    step: &StepParams,
+    source_offset: u32,
+    sources: u32,
+    list_offset: u32,
+) -> Result<(u32, u32)> {
+    let scan_group = backend.scan_group();
+    let tail = StepParams { source_offset, list_offset, item_count: 4 * sources, scan_group, ..*step };
+    backend.run(Kernel::Step4Tail, &tail)?;
+    let sums = backend.read(FrameBuffer::Sums, 0..TAIL_SUM_ENDS as usize)?;
+    let sum = |at: u32| sums.get(at as usize).copied().unwrap_or(list_offset);
+    Ok((sum(TAIL_SUM_SOURCES), sum(TAIL_SUM_LIST)))
 }
 
 /// Each row there and back, then each column.

@@ -195,6 +195,7 @@ pub(crate) fn check_parity(result: &KernelParity) -> Check {
             | Kernel::Step3a
             | Kernel::Step3c
             | Kernel::Step4Trace
+            | Kernel::Step4Tail
             | Kernel::Step4Sweep
     );
     let limit = if exact { 0 } else { (result.words as f64 * WRONG_LIMIT) as u64 };

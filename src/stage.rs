@@ -63,6 +63,8 @@ pub enum Items {
     Chunks,
     /// Work-groups of `scan_group` that cover `item_count` elements.
     Groups,
+    /// One work-group of any size; no more than `scan_group`.
+    OneGroup,
 }
 
 /// A kernel: an entry point of its stage's file.
@@ -85,12 +87,13 @@ pub enum Kernel {
     Step4Scan,
     Step4Scatter,
     Step4Trace,
+    Step4Tail,
     Step4Sweep,
 }
 
 impl Kernel {
     /// All kernels in the order of a frame.
-    pub const ALL: [Kernel; 17] = [
+    pub const ALL: [Kernel; 18] = [
         Kernel::Step1,
         Kernel::Step2a,
         Kernel::Step2bCount,
@@ -107,6 +110,7 @@ impl Kernel {
         Kernel::Step4Scan,
         Kernel::Step4Scatter,
         Kernel::Step4Trace,
+        Kernel::Step4Tail,
         Kernel::Step4Sweep,
     ];
 
@@ -129,6 +133,7 @@ impl Kernel {
             Kernel::Step4Scan => "step4_scan",
             Kernel::Step4Scatter => "step4_scatter",
             Kernel::Step4Trace => "step4_trace",
+            Kernel::Step4Tail => "step4_tail",
             Kernel::Step4Sweep => "step4_sweep",
         }
     }
@@ -148,6 +153,7 @@ impl Kernel {
             | Kernel::Step4Scan
             | Kernel::Step4Scatter
             | Kernel::Step4Trace
+            | Kernel::Step4Tail
             | Kernel::Step4Sweep => Stage::Step4,
         }
     }
@@ -166,6 +172,7 @@ impl Kernel {
             | Kernel::Step3bScatter
             | Kernel::Step4Scatter => Items::Chunks,
             Kernel::Step2bScan | Kernel::Step3bScan | Kernel::Step4Scan => Items::Groups,
+            Kernel::Step4Tail => Items::OneGroup,
         }
     }
 }
@@ -191,7 +198,7 @@ pub enum Binding {
     Masks,
     /// Scan levels of the packing.
     Sums,
-    /// Local memory for a scan: two words per work-item.
+    /// Local memory for a scan: two words per work-item of `scan_group`.
     Scratch,
 }
 
@@ -207,6 +214,7 @@ impl Kernel {
             Kernel::Step2bCount | Kernel::Step3bCount => &[Frame, Step, Attributes, Masks, Sums],
             Kernel::Step2bScan | Kernel::Step3bScan | Kernel::Step4Scan => &[Step, Sums, Scratch],
             Kernel::Step2bScatter | Kernel::Step3bScatter => &[Step, Masks, Sums, List],
+            Kernel::Step4Tail => &[Scene, Step, Attributes, Color, Counters, List, Sums, Scratch],
             Kernel::Step4Mark => &[Frame, Step, Attributes, List, Color],
             Kernel::Step4Count => &[Frame, Step, Attributes, List, Masks, Sums],
             Kernel::Step4Scatter => &[Frame, Step, Masks, Sums, List, List],

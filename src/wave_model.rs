@@ -5,8 +5,11 @@
 //! slowest lane of each wave. It knows nothing of clocks or caches; what it compares are sums of the same kind. The
 //! weights and what they rest on are in docs/wave-model.md. The unit is a traversal step of one lane.
 
+use std::ops::Range;
+
 use crate::backend::Backend;
 use crate::backend::FrameBuffer;
+use crate::backend::recording::Recorded;
 use crate::bands::read_plane;
 use crate::error::Result;
 use crate::layout::*;
@@ -33,13 +36,14 @@ const ATTRIBUTE_BYTES: f64 = 4.0 * PLANE_COUNT as f64;
 const COLOR_BYTES: f64 = 4.0;
 const LIST_BYTES: f64 = 4.0;
 
-/// One launch: what each lane costs, in launch order. Lanes that have no work cost 0 but take part.
+/// One launch: what each lane costs, in launch order.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LaunchCost {
     /// The stage that it belongs to.
     pub stage: Stage,
-    /// Costs of the lanes.
-    pub lanes: Vec<f64>,
+    /// Costs of the lanes. All wait for each other between passes: one pass, but for the rounds of `step4_tail`. Lanes
+    /// that have no work cost 0 but take part.
+    pub passes: Vec<Vec<f64>>,
     /// Whether the host waits for what it finds.
     pub waits: bool,
 }
@@ -95,9 +99,11 @@ pub fn stage_costs(launches: &[LaunchCost]) -> Vec<StageCost> {
         for launch in launches.iter().filter(|launch| launch.stage == stage) {
             cost.launches += 1;
             cost.round_trips += u32::from(launch.waits);
-            cost.lanes += launch.lanes.iter().sum::<f64>();
-            for (sum, wave) in cost.waves.iter_mut().zip(WAVES) {
-                *sum += launch.lanes.chunks(wave).map(|lanes| slowest(lanes) * wave as f64).sum::<f64>();
+            for pass in &launch.passes {
+                cost.lanes += pass.iter().sum::<f64>();
+                for (sum, wave) in cost.waves.iter_mut().zip(WAVES) {
+                    *sum += pass.chunks(wave).map(|lanes| slowest(lanes) * wave as f64).sum::<f64>();
+                }
             }
         }
         cost
@@ -113,29 +119,33 @@ fn slowest(lanes: &[f64]) -> f64 {
 ///
 /// # Errors
 /// A failing read.
-pub fn launch_costs(
-    backend: &mut dyn Backend,
-    frame: &FrameParams,
-    launches: &[(Kernel, StepParams)],
-) -> Result<Vec<LaunchCost>> {
-    let listed = launches.iter().filter(|(kernel, _)| traces_list(*kernel));
-    let list_end = listed.map(|(_, step)| step.list_offset + step.item_count).max().unwrap_or(0);
+pub fn launch_costs(backend: &mut dyn Backend, frame: &FrameParams, launches: &[Recorded]) -> Result<Vec<LaunchCost>> {
+    let list_end = launches.iter().filter_map(listed).map(|listed| listed.end).max().unwrap_or(0);
     let mut counters = Vec::new();
     for counter in [COUNTER_TRAVERSAL_STEPS, COUNTER_TRIANGLE_TESTS, COUNTER_SHADED] {
         counters.push(read_plane(backend, frame, PLANE_COUNT + counter)?);
     }
     let classes = if frame.block > 1 { read_plane(backend, frame, PLANE_CLASS)? } else { Vec::new() };
     let items = FrameItems { frame, counters, classes, list: backend.read(FrameBuffer::List, 0..list_end as usize)? };
-    let cost = |&(kernel, step): &(Kernel, StepParams)| LaunchCost {
-        stage: kernel.stage(),
-        lanes: items.lanes(kernel, &step),
-        waits: matches!(kernel, Kernel::Step2bCount | Kernel::Step3bCount | Kernel::Step4Count),
+    let cost = |launch: &Recorded| LaunchCost {
+        stage: launch.kernel.stage(),
+        passes: items.passes(launch),
+        waits: matches!(
+            launch.kernel,
+            Kernel::Step2bCount | Kernel::Step3bCount | Kernel::Step4Count | Kernel::Step4Tail
+        ),
     };
     Ok(launches.iter().map(cost).collect())
 }
 
-fn traces_list(kernel: Kernel) -> bool {
-    matches!(kernel, Kernel::Step2c | Kernel::Step3c | Kernel::Step4Trace)
+/// The list entries that a launch traces.
+fn listed(launch: &Recorded) -> Option<Range<u32>> {
+    let begin = launch.step.list_offset;
+    match launch.kernel {
+        Kernel::Step2c | Kernel::Step3c | Kernel::Step4Trace => Some(begin..begin + launch.step.item_count),
+        Kernel::Step4Tail => launch.round_ends.last().map(|&end| begin..end),
+        _ => None,
+    }
 }
 
 /// What a frame left on the device.
@@ -148,6 +158,22 @@ struct FrameItems<'a> {
 }
 
 impl FrameItems<'_> {
+    fn passes(&self, launch: &Recorded) -> Vec<Vec<f64>> {
+        if launch.kernel != Kernel::Step4Tail {
+            return vec![self.lanes(launch.kernel, &launch.step)];
+        }
+        // Each round is a mark, which packs, too, and a trace.
+        let (mut sources, mut begin, mut passes) = (launch.step.item_count / 4, launch.step.list_offset, Vec::new());
+        for &end in &launch.round_ends {
+            let round = StepParams { list_offset: begin, item_count: end - begin, ..launch.step };
+            let mark = StepParams { item_count: 4 * sources, ..round };
+            passes.push(self.lanes(Kernel::Step4Mark, &mark));
+            passes.push(self.lanes(Kernel::Step4Trace, &round));
+            (sources, begin) = (end - begin, end);
+        }
+        passes
+    }
+
     fn lanes(&self, kernel: Kernel, step: &StepParams) -> Vec<f64> {
         let bytes = |bytes: f64| bytes / BYTES_PER_STEP;
         let alike = |count: u32, cost: f64| vec![cost; count as usize];
@@ -168,6 +194,7 @@ impl FrameItems<'_> {
             Kernel::Step2bScatter | Kernel::Step3bScatter | Kernel::Step4Scatter => {
                 alike(step.item_count.div_ceil(32), bytes(4.0 * 12.0))
             }
+            Kernel::Step4Tail => unreachable!("its passes are those of other kernels"),
             // One lane a line: what it fires is not attributed to lines.
             Kernel::Step4Sweep => alike(step.item_count, bytes(16.0 * f64::from(self.frame.width))),
         }
@@ -214,7 +241,7 @@ mod tests {
     use super::*;
 
     fn launch(stage: Stage, lanes: Vec<f64>) -> LaunchCost {
-        LaunchCost { stage, lanes, waits: false }
+        LaunchCost { stage, passes: vec![lanes], waits: false }
     }
 
     #[test]

@@ -7,7 +7,7 @@ pub mod recording;
 pub mod twin;
 
 use crate::error::Result;
-use crate::layout::{COUNTER_COUNT, FrameParams, PLANE_COUNT, StepParams};
+use crate::layout::{COUNTER_COUNT, FrameParams, PLANE_COUNT, StepParams, TAIL_ROUNDS, TAIL_SUM_ENDS};
 use crate::stage::Kernel;
 
 /// What the statistics say about the device of a frame.
@@ -61,7 +61,7 @@ impl BufferSizes {
             color: words(pixels)?,
             list: words(if attributes { pixels } else { 1 })?,
             masks: words(masks)?,
-            sums: words(sums + 1)?,
+            sums: words((sums + 1).max(u64::from(TAIL_SUM_ENDS + TAIL_ROUNDS)))?,
         })
     }
 

@@ -205,7 +205,7 @@ pub fn scan_group(limits: &Limits) -> u32 {
 pub fn work_group(choices: &Choices, kernel: Kernel) -> Option<[usize; 2]> {
     match kernel.items() {
         Items::Grid => Some(choices.work_group(kernel.stage().name())),
-        Items::List | Items::Chunks => Some([LIST_GROUP, 1]),
+        Items::List | Items::Chunks | Items::OneGroup => Some([LIST_GROUP, 1]),
         Items::Groups => None,
     }
 }
@@ -288,17 +288,22 @@ impl Backend for OpenClBackend {
                 Binding::Scratch => args.push(Arg::Local(8 * step.scan_group as usize)),
             }
         }
-        let barrier = kernel.items() == Items::Groups;
+        let barrier = matches!(kernel.items(), Items::Groups | Items::OneGroup);
         let global = match kernel.items() {
             Items::Grid => [step.grid_width as usize, step.grid_height as usize],
             Items::List | Items::Groups => [step.item_count as usize, 1],
             Items::Chunks => [step.item_count.div_ceil(32) as usize, 1],
+            Items::OneGroup => [1, 1],
         };
+        let fit = |wanted| self.door.fit_work_group(device_kernel, wanted, barrier);
         let local = match work_group(self.door.choices(), kernel) {
-            Some(wanted) => self.door.fit_work_group(device_kernel, wanted, false),
+            // Its scratch memory is that of a scan.
+            Some([width, _]) if kernel.items() == Items::OneGroup => fit([width.min(step.scan_group as usize), 1]),
+            Some(wanted) => fit(wanted),
             // The scan's levels depend on the group: it is not fitted but checked.
             None => [step.scan_group as usize, 1],
         };
+        let global = if kernel.items() == Items::OneGroup { local } else { global };
         if global.contains(&0) {
             return Ok(());
         }

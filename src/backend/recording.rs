@@ -3,14 +3,25 @@
 
 use super::{Backend, BackendInfo, BufferSizes, FrameBuffer, MemoryLimits};
 use crate::error::Result;
-use crate::layout::{FrameParams, StepParams};
+use crate::layout::{FrameParams, StepParams, TAIL_SUM_ENDS, TAIL_SUM_ROUNDS};
 use crate::stage::Kernel;
+
+/// A launch that was recorded.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Recorded {
+    /// The kernel.
+    pub kernel: Kernel,
+    /// Its parameters.
+    pub step: StepParams,
+    /// `step4_tail`: where the list ended after each of its rounds.
+    pub round_ends: Vec<u32>,
+}
 
 /// Records the launches of a frame.
 pub struct RecordingBackend<'a> {
     inner: &'a mut dyn Backend,
     /// The launches so far, in order.
-    pub launches: Vec<(Kernel, StepParams)>,
+    pub launches: Vec<Recorded>,
 }
 
 impl<'a> RecordingBackend<'a> {
@@ -38,8 +49,15 @@ impl Backend for RecordingBackend<'_> {
     }
 
     fn run(&mut self, kernel: Kernel, step: &StepParams) -> Result<()> {
-        self.launches.push((kernel, *step));
-        self.inner.run(kernel, step)
+        self.inner.run(kernel, step)?;
+        let mut round_ends = Vec::new();
+        if kernel == Kernel::Step4Tail {
+            let rounds = self.inner.read_sum(TAIL_SUM_ROUNDS)? as usize;
+            let ends = TAIL_SUM_ENDS as usize;
+            round_ends = self.inner.read(FrameBuffer::Sums, ends..ends + rounds)?;
+        }
+        self.launches.push(Recorded { kernel, step: *step, round_ends });
+        Ok(())
     }
 
     fn read_sum(&mut self, at: u32) -> Result<u32> {

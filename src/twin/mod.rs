@@ -64,6 +64,7 @@ pub fn run(kernel: Kernel, scene: &SceneArgs, step: &StepParams, buffers: &Frame
                 }
             });
         }
+        Items::OneGroup => step4::step4_tail(scene, step, buffers),
         Items::List | Items::Chunks | Items::Groups => {
             let count = match kernel.items() {
                 Items::Chunks => step.item_count.div_ceil(32),
@@ -92,6 +93,7 @@ fn item_1d(kernel: Kernel, scene: &SceneArgs, step: &StepParams, i: u32, buffers
         Kernel::Step4Scan => step4::step4_scan(step, i, buffers),
         Kernel::Step4Scatter => step4::step4_scatter(scene, step, i, buffers),
         Kernel::Step4Trace => step4::step4_trace(scene, step, i, buffers),
+        Kernel::Step4Tail => unreachable!("a kernel of one work-group has no items"),
         Kernel::Step4Sweep => step4::step4_sweep(scene, step, i, buffers),
     }
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Twin of `kernels/step4.cl`: post-correction.
 
+use rayon::prelude::*;
+
 use super::planes::{Attributes, color_index, hits_differ, load_attributes, plane_index, surfaces_differ};
 use super::trace::trace_pixel;
 use super::{FrameBuffers, SceneArgs, pack};
@@ -140,6 +142,30 @@ pub fn step4_trace(scene: &SceneArgs, step: &StepParams, item: u32, buffers: &Fr
         return;
     }
     trace_pixel(scene, x, y, CLASS_CORRECTED, step, buffers);
+}
+
+/// The work-group of `step4_tail`.
+pub fn step4_tail(scene: &SceneArgs, step: &StepParams, buffers: &FrameBuffers) {
+    let mut round = *step;
+    let mut rounds = 0;
+    while rounds < TAIL_ROUNDS && round.item_count != 0 && round.item_count <= 4 * TAIL_SOURCES {
+        (0..round.item_count).for_each(|i| step4_mark(scene, &round, i, buffers));
+        let mut total = 0;
+        for i in (0..round.item_count).filter(|&i| claimed_by(scene.frame, &round, buffers, i)) {
+            buffers.list.set(round.list_offset + total, neighbour(scene.frame, &round, buffers, i));
+            total += 1;
+        }
+        let trace = StepParams { item_count: total, ..round };
+        (0..total).into_par_iter().for_each(|item| step4_trace(scene, &trace, item, buffers));
+        round.source_offset = round.list_offset;
+        round.list_offset += total;
+        round.item_count = 4 * total;
+        buffers.sums.set(TAIL_SUM_ENDS + rounds, round.list_offset);
+        rounds += 1;
+    }
+    buffers.sums.set(TAIL_SUM_SOURCES, round.source_offset);
+    buffers.sums.set(TAIL_SUM_LIST, round.list_offset);
+    buffers.sums.set(TAIL_SUM_ROUNDS, rounds);
 }
 
 /// One work-item of `step4_sweep`.
