@@ -94,6 +94,9 @@ shared_constants! {
     /// All fail bits.
     FAIL_ALL = 0x7f << 8;
 
+    /// Class-plane bit: a reference of this pixel is a mirror or glass, so that its ray may send secondary rays.
+    CLASS_SECONDARY = 1 << 15;
+
     /// Step flag: write attributes and class.
     STEP_STORE = 1;
     /// Step flag: step4 compares shadow bits too.

@@ -7,6 +7,7 @@ use crate::error::Result;
 use crate::layout::*;
 use crate::options::{Correction, CorrectionMethod, Interpolation, RenderOptions, Tolerances};
 use crate::stage::Kernel;
+use crate::twin::pack::grid_items;
 use crate::twin::planes::plane_index;
 
 /// How many pixels of a frame went which way.
@@ -229,8 +230,8 @@ fn with_checks(step: StepParams, tolerances: &Tolerances, options: &RenderOption
 
 /// Packs the pixels of a class that wait for rays behind the `list_offset` entries that the list holds already.
 fn pack_grid(backend: &mut dyn Backend, class: &AdaptiveGrid, list_offset: u32) -> Result<u32> {
-    let tiles = class.params.grid_width.div_ceil(PACK_TILE_SIDE) * class.params.grid_height.div_ceil(PACK_TILE_SIDE);
-    let item_count = tiles * PACK_TILE_SIDE * PACK_TILE_SIDE;
+    // Once for the pixels beside mirrors and glass, once for the others.
+    let item_count = 2 * grid_items(&class.params);
     pack(backend, &class.pack, &StepParams { item_count, list_offset, ..class.params })
 }
 

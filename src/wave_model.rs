@@ -227,9 +227,11 @@ impl FrameItems<'_> {
     /// A check, and the interpolation where it passed: what correction traced later had been interpolated before.
     fn checked(&self, x: u32, y: u32) -> f64 {
         let read = 2.0 * (ATTRIBUTE_BYTES + COLOR_BYTES) / BYTES_PER_STEP;
-        let class = self.classes[plane_index(self.frame, x, y) as usize] & CLASS_MASK;
-        if matches!(class, CLASS_INTERPOLATED | CLASS_CORRECTED | CLASS_CONFIRMED) {
-            read + SHADED_POINT + (ATTRIBUTE_BYTES + COLOR_BYTES) / BYTES_PER_STEP
+        let at = plane_index(self.frame, x, y) as usize;
+        if matches!(self.classes[at] & CLASS_MASK, CLASS_INTERPOLATED | CLASS_CORRECTED | CLASS_CONFIRMED) {
+            // Background is not shaded. What a correction ray left here counts as one point, too.
+            let shaded = if self.counters[2][at] > 0 { SHADED_POINT } else { 0.0 };
+            read + shaded + (ATTRIBUTE_BYTES + COLOR_BYTES) / BYTES_PER_STEP
         } else {
             read
         }

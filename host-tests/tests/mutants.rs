@@ -101,7 +101,12 @@ const ENTRY_POINTS: &[Mutant] = &[
     ("step4.cl", "chunk * 32u < step.item_count", "chunk * 64u < step.item_count", Shot::Rods, Kernel::Step4Count),
     ("step4.cl", SCAN, SCAN_ONE_SHORT, Shot::Rods, Kernel::Step4Scan),
     ("step4.cl", "if (chunk < chunk_count)", "if (chunk < chunk_count / 2u)", Shot::Rods, Kernel::Step4Scatter),
-    ("step4.cl", ENTRY, EVEN_ENTRY, Shot::Rods, Kernel::Step4Trace),
+    ("step4.cl", "list[step->list_offset + item]", "list[step->list_offset + (item & ~1u)]", Shot::Rods, Kernel::Step4Trace),
+    ("step4.cl", "begin = lane * share", "begin = lane", Shot::Rods, Kernel::Step4Tail),
+    ("step4.cl", "const uint share = (round.item_count + lanes - 1u) / lanes", "const uint share = round.item_count / lanes", Shot::Rods, Kernel::Step4Tail),
+    ("step4.cl", "round.source_offset = round.list_offset;", "", Shot::Rods, Kernel::Step4Tail),
+    ("step4.cl", "rounds < TAIL_ROUNDS &&", "rounds < 1u &&", Shot::Rods, Kernel::Step4Tail),
+    ("step4.cl", "round.item_count <= 4u * TAIL_SOURCES", "round.item_count <= 8u", Shot::Rods, Kernel::Step4Tail),
     ("step4.cl", "if (k == length) continue;", "if (k >= length) continue;", Shot::RodsSwept, Kernel::Step4Sweep),
 ];
 
@@ -120,7 +125,7 @@ const CORRECTION: &[Mutant] = &[
     ("step4.cl", "case 1u: return x + 1u < frame->width ?", "case 1u: return x + 25u < frame->width ?", Shot::Rods, Kernel::Step4Mark),
     ("step4.cl", "case 2u: return y > frame->window_begin ?", "case 2u: return y > frame->window_begin + 19u ?", Shot::Rods, Kernel::Step4Mark),
     ("step4.cl", "default: return y + 1u < frame->window_end ?", "default: return y + 19u < frame->window_end ?", Shot::Rods, Kernel::Step4Mark),
-    ("step4.cl", "(step.flags & STEP_SETTLE) ||", "", Shot::RodsInBands, Kernel::Step4Trace),
+    ("step4.cl", "(step->flags & STEP_SETTLE) ||", "", Shot::RodsInBands, Kernel::Step4Trace),
     ("step4.cl", "y >= frame->interior_end", "y > frame->interior_end", Shot::RodsInBands, Kernel::Step4Trace),
     ("step4.cl", "y < frame->interior_begin", "y + 1u < frame->interior_begin", Shot::RodsInBands, Kernel::Step4Trace),
     ("common/attributes.clh", "(y - frame->window_begin) >> shift", "(frame->window_end - 1u - y) >> shift", Shot::RodsInBands, Kernel::Step1),
@@ -238,12 +243,17 @@ const PACKING: &[Mutant] = &[
     ("common/pack.clh", "k < 32u &&", "k < 31u &&", Shot::Zoo, Kernel::Step2bCount),
     ("common/pack.clh", "popcount(mask)", "popcount(mask >> 1)", Shot::Zoo, Kernel::Step3bCount),
     ("common/pack.clh", "lane >= stride ?", "lane > stride ?", Shot::Strictest, Kernel::Step2bScan),
-    ("common/pack.clh", "scratch[from + lane] - value", "scratch[from + lane]", Shot::Zoo, Kernel::Step3bScan),
+    ("common/pack.clh", "= prefix - value", "= prefix", Shot::Zoo, Kernel::Step3bScan),
     ("common/pack.clh", "if (lane == lanes - 1u)", "if (lane == 0u)", Shot::Rods, Kernel::Step4Scan),
     ("common/pack.clh", "base += sums[offset + element]", "base = sums[offset + element]", Shot::Large, Kernel::Step2bScatter),
     ("common/pack.clh", "offset += count", "offset += 0u", Shot::Large, Kernel::Step2bScatter),
     ("common/pack_order.clh", "within / PACK_TILE_SIDE", "within % PACK_TILE_SIDE", Shot::Zoo, Kernel::Step2bScatter),
-    ("common/pack_order.clh", "== CLASS_PENDING", "!= CLASS_PENDING", Shot::Zoo, Kernel::Step3bCount),
+    ("common/pack.clh", "*total = scratch[from + lanes - 1u]", "*total = scratch[from]", Shot::Rods, Kernel::Step4Tail),
+    ("common/pack_order.clh", "CLASS_SECONDARY)) == wanted", "CLASS_SECONDARY)) != wanted", Shot::Zoo, Kernel::Step3bCount),
+    ("common/pack_order.clh", "i < grid_items(step) ? CLASS_PENDING | CLASS_SECONDARY", "i >= grid_items(step) ? CLASS_PENDING | CLASS_SECONDARY", Shot::Zoo, Kernel::Step2bCount),
+    ("common/pack_order.clh", "i < half_items ? i : i - half_items", "i", Shot::Zoo, Kernel::Step3bScatter),
+    ("common/similarity.clh", "sends_secondary(materials, object_materials, &a) ||", "", Shot::Zoo, Kernel::Step2a),
+    ("common/similarity.clh", "surface != SURFACE_OPAQUE", "surface == SURFACE_OPAQUE", Shot::Zoo, Kernel::Step3a),
 ];
 
 /// A cache of its own, kept from run to run: mutants shall not crowd the user's.

@@ -59,10 +59,18 @@ pub fn scatter(chunk: u32, step: &StepParams, masks: &Words, sums: &Words, list:
     }
 }
 
+/// How many items half of the list has: the grid's tiles, those at its borders whole.
+pub fn grid_items(step: &StepParams) -> u32 {
+    let tiles = step.grid_width.div_ceil(PACK_TILE_SIDE) * step.grid_height.div_ceil(PACK_TILE_SIDE);
+    tiles * PACK_TILE_SIDE * PACK_TILE_SIDE
+}
+
 /// Grid coordinates of item `i` in packing order: x in the low half word, y in the high one.
 pub fn grid_item(step: &StepParams, i: u32) -> u32 {
+    let half_items = grid_items(step);
+    let k = if i < half_items { i } else { i - half_items };
     let tile_columns = step.grid_width.div_ceil(PACK_TILE_SIDE);
-    let (tile, within) = (i / (PACK_TILE_SIDE * PACK_TILE_SIDE), i % (PACK_TILE_SIDE * PACK_TILE_SIDE));
+    let (tile, within) = (k / (PACK_TILE_SIDE * PACK_TILE_SIDE), k % (PACK_TILE_SIDE * PACK_TILE_SIDE));
     let gx = (tile % tile_columns) * PACK_TILE_SIDE + within % PACK_TILE_SIDE;
     let gy = (tile / tile_columns) * PACK_TILE_SIDE + within / PACK_TILE_SIDE;
     gx | gy << 16
@@ -74,7 +82,7 @@ pub fn grid_item_pixel(step: &StepParams, i: u32) -> u32 {
     (step.origin_x + step.step_x * (item & 0xffff)) | (step.origin_y + step.step_y * (item >> 16)) << 16
 }
 
-/// Does item `i` lie in the grid, and does its pixel wait for a ray?
+/// Does item `i` lie in the grid, does its pixel wait for a ray, and is it one of the half that `i` lies in?
 pub fn grid_item_is_pending(frame: &FrameParams, step: &StepParams, attributes: &Words, i: u32) -> bool {
     let item = grid_item(step, i);
     if (item & 0xffff) >= step.grid_width || (item >> 16) >= step.grid_height {
@@ -82,5 +90,6 @@ pub fn grid_item_is_pending(frame: &FrameParams, step: &StepParams, attributes: 
     }
     let pixel = grid_item_pixel(step, i);
     let at = plane_index(frame, pixel & 0xffff, pixel >> 16);
-    attributes.get(PLANE_CLASS * frame.plane_pitch + at) & CLASS_MASK == CLASS_PENDING
+    let wanted = if i < grid_items(step) { CLASS_PENDING | CLASS_SECONDARY } else { CLASS_PENDING };
+    attributes.get(PLANE_CLASS * frame.plane_pitch + at) & (CLASS_MASK | CLASS_SECONDARY) == wanted
 }

@@ -130,6 +130,12 @@ fn find_other_pair(
     pairs.flatten().next()
 }
 
+/// Would a ray that hits what `a` hit send secondary rays?
+fn sends_secondary(scene: &SceneArgs, a: &Attributes) -> bool {
+    a.object != NO_OBJECT
+        && scene.materials[scene.object_materials[a.object as usize] as usize].surface != SURFACE_OPAQUE
+}
+
 /// Checks pixel `(x, y)` against its two references; interpolates and shades it or marks it pending.
 pub fn check_pixel(scene: &SceneArgs, step: &StepParams, x: u32, y: u32, out: &FrameBuffers) {
     let frame = scene.frame;
@@ -154,7 +160,9 @@ pub fn check_pixel(scene: &SceneArgs, step: &StepParams, x: u32, y: u32, out: &F
         None
     };
     let Some((a, b)) = pair else {
-        planes.set(PLANE_CLASS * pitch + at, CLASS_PENDING | mask);
+        let secondary = sends_secondary(scene, &a.0) || sends_secondary(scene, &b.0);
+        let secondary = if secondary { CLASS_SECONDARY } else { 0 };
+        planes.set(PLANE_CLASS * pitch + at, CLASS_PENDING | mask | secondary);
         return;
     };
     let m = interpolate(frame, step, &a, &b);
@@ -162,6 +170,7 @@ pub fn check_pixel(scene: &SceneArgs, step: &StepParams, x: u32, y: u32, out: &F
     planes.set(PLANE_CLASS * pitch + at, CLASS_INTERPOLATED);
     planes.set(PLANE_CLAIM * pitch + at, NO_CLAIM);
     let mut color = xyz(frame.background);
+    let mut work = Work::default();
     if m.object != NO_OBJECT {
         let point = ShadePoint {
             material: scene.object_materials[m.object as usize],
@@ -171,8 +180,9 @@ pub fn check_pixel(scene: &SceneArgs, step: &StepParams, x: u32, y: u32, out: &F
             t: m.t,
             shadow_bits: m.shadow_bits,
         };
+        work.shaded += 1;
         color = shade_local(scene, &point, normalize(xyz(frame.eye) - m.position)) + m.gcol;
     }
-    store_work(&out.counters, pitch, at, &Work { shaded: 1, ..Work::default() });
+    store_work(&out.counters, pitch, at, &work);
     out.color.set(color_index(frame, x, y), srgb_word(scene.tables, color));
 }

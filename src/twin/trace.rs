@@ -208,8 +208,8 @@ pub fn trace_pixel(scene: &SceneArgs, x: u32, y: u32, pixel_class: u32, step: &S
     let hit = closest_hit(scene, o, d, &mut work);
     let mut a = Attributes::MISS;
     let mut color = xyz(frame.background);
-    work.shaded += 1;
     if hit.triangle != NO_TRIANGLE {
+        work.shaded += 1;
         let p = surface_point(scene, o, d, &hit);
         a = Attributes {
             position: p.position,
