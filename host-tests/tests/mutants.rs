@@ -126,7 +126,7 @@ const CORRECTION: &[Mutant] = &[
     ("step4.cl", "case 2u: return y > frame->window_begin ?", "case 2u: return y > frame->window_begin + 19u ?", Shot::Rods, Kernel::Step4Mark),
     ("step4.cl", "default: return y + 1u < frame->window_end ?", "default: return y + 19u < frame->window_end ?", Shot::Rods, Kernel::Step4Mark),
     ("step4.cl", "(step->flags & STEP_SETTLE) ||", "", Shot::RodsInBands, Kernel::Step4Trace),
-    ("step4.cl", "y >= frame->interior_end", "y > frame->interior_end", Shot::RodsInBands, Kernel::Step4Trace),
+    ("step4.cl", "y >= frame->interior_end", "y > frame->interior_end", Shot::RodsInBands, Kernel::Step4Tail),
     ("step4.cl", "y < frame->interior_begin", "y + 1u < frame->interior_begin", Shot::RodsInBands, Kernel::Step4Trace),
     ("common/attributes.clh", "(y - frame->window_begin) >> shift", "(frame->window_end - 1u - y) >> shift", Shot::RodsInBands, Kernel::Step1),
     ("common/attributes.clh", "(y - frame->window_begin) * frame->width", "(frame->window_end - 1u - y) * frame->width", Shot::RodsInBands, Kernel::Step1),
@@ -242,9 +242,9 @@ const SIMILARITY: &[Mutant] = &[
 const PACKING: &[Mutant] = &[
     ("common/pack.clh", "k < 32u &&", "k < 31u &&", Shot::Zoo, Kernel::Step2bCount),
     ("common/pack.clh", "popcount(mask)", "popcount(mask >> 1)", Shot::Zoo, Kernel::Step3bCount),
-    ("common/pack.clh", "lane >= stride ?", "lane > stride ?", Shot::Strictest, Kernel::Step2bScan),
+    ("common/pack.clh", "lane >= stride ?", "lane > stride ?", Shot::Rods, Kernel::Step4Scan),
     ("common/pack.clh", "= prefix - value", "= prefix", Shot::Zoo, Kernel::Step3bScan),
-    ("common/pack.clh", "if (lane == lanes - 1u)", "if (lane == 0u)", Shot::Rods, Kernel::Step4Scan),
+    ("common/pack.clh", "+ element / lanes] = total", "+ element / lanes] = value", Shot::Rods, Kernel::Step4Scan),
     ("common/pack.clh", "base += sums[offset + element]", "base = sums[offset + element]", Shot::Large, Kernel::Step2bScatter),
     ("common/pack.clh", "offset += count", "offset += 0u", Shot::Large, Kernel::Step2bScatter),
     ("common/pack_order.clh", "within / PACK_TILE_SIDE", "within % PACK_TILE_SIDE", Shot::Zoo, Kernel::Step2bScatter),
@@ -275,8 +275,10 @@ fn every_broken_line_is_caught() {
     if no_opencl() {
         return;
     }
-    let mutants: Vec<&Mutant> =
-        [ENTRY_POINTS, CORRECTION, TRAVERSAL, RAY_TREE, SHADING, SIMILARITY, PACKING].into_iter().flatten().collect();
+    // For whoever changes one kernel: only mutants of this file.
+    let only = std::env::var("MUTANTS_OF").unwrap_or_default();
+    let all = [ENTRY_POINTS, CORRECTION, TRAVERSAL, RAY_TREE, SHADING, SIMILARITY, PACKING].into_iter().flatten();
+    let mutants: Vec<&Mutant> = all.filter(|mutant| mutant.0.contains(&only)).collect();
     let mut scenes: HashMap<&str, Prepared> = HashMap::new();
     let mut sound: BTreeSet<String> = BTreeSet::new();
     let mut missed = Vec::new();
