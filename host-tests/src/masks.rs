@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 use glam::DVec3;
-use rarefy::layout::{CLASS_BASE, CLASS_INTERPOLATED, CLASS_TRACED, PLANE_CLASS};
+use rarefy::layout::{CLASS_BASE, CLASS_INTERPOLATED, CLASS_MASK, CLASS_TRACED, FAIL_ALL, PLANE_CLASS};
 use rarefy::options::{Mode, RenderOptions, Tolerances};
 use rarefy::scene::Scene;
 
@@ -94,7 +94,7 @@ pub fn adaptive(block: u32, tolerances: Tolerances) -> RenderOptions {
     RenderOptions { tolerances, coarse_tolerances: tolerances, ..options(Mode::Adaptive, W, H, block) }
 }
 
-/// Draws `scene` and lists the pixels whose class word is not what `mask` says of their references.
+/// Draws `scene` and lists the pixels whose class and failed tests are not what `mask` says of their references.
 pub fn mismatches(scene: &Scene, options: &RenderOptions, mask: &dyn Fn((u32, u32), (u32, u32)) -> u32) -> Vec<String> {
     let mut renderer = twin_renderer(scene.clone());
     draw(&mut renderer, options);
@@ -111,6 +111,8 @@ pub fn mismatches(scene: &Scene, options: &RenderOptions, mask: &dyn Fn((u32, u3
                 mask => CLASS_TRACED | mask,
             },
         };
+        // Which half of the packed list a pixel went to is no question here.
+        let word = word & (CLASS_MASK | FAIL_ALL);
         if word != expected {
             wrong.push(format!("pixel {pixel:?}: {word:#x} instead of {expected:#x}"));
         }
