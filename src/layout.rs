@@ -167,7 +167,7 @@ shared_constants! {
     /// Entries of a traversal stack.
     MAX_DEPTH = crate::kdtree::MAX_DEPTH as u32;
     /// Side of the square tiles in whose order pixels are packed, in grid items.
-    PACK_TILE_SIDE = 8;
+    PACK_TILE_SIDE = 32;
 
     /// First word of the sRGB thresholds in the tables buffer (257 floats).
     TABLE_SRGB_THRESHOLD = 256;
