@@ -15,7 +15,12 @@ use rarefy_host_tests::frames::no_opencl;
 use rarefy_host_tests::masks::*;
 
 fn renderer(scene: Scene, device: DeviceChoice) -> Renderer {
-    Renderer::new(scene, &RendererOptions { device, strict: true, ..RendererOptions::default() }, &|_, _| {}).unwrap()
+    Renderer::new(
+        scene,
+        &RendererOptions { device, strict: true, ..RendererOptions::default() },
+        &rarefy::Monitor::default(),
+    )
+    .unwrap()
 }
 
 fn devices() -> Vec<DeviceChoice> {
@@ -109,7 +114,7 @@ fn a_budget_cuts_the_frame_and_is_kept() {
     let draw_within = |bytes: Option<u64>| {
         let renderer_options =
             RendererOptions { device: DeviceChoice::Cpu, memory_budget_bytes: bytes, ..RendererOptions::default() };
-        let mut renderer = Renderer::new(scene(), &renderer_options, &|_, _| {}).unwrap();
+        let mut renderer = Renderer::new(scene(), &renderer_options, &rarefy::Monitor::default()).unwrap();
         let frame = renderer.render_exactly(&options, Keep::default());
         (frame.map(|frame| frame.pixels), renderer.peak_device_bytes())
     };
@@ -162,7 +167,7 @@ fn real_scenes_are_the_same_in_bands() {
             continue;
         }
         for device in devices() {
-            let scene = rarefy::scene::load(&folder.join(name), &|_, _| ()).unwrap();
+            let scene = rarefy::scene::load(&folder.join(name), &rarefy::Monitor::default()).unwrap();
             let mut renderer = renderer(scene, device);
             let options = RenderOptions { width: 400, height: 301, ..RenderOptions::default() };
             assert_same_in_bands(&mut renderer, &options, &[2, 10, 32, 76, 200]);
