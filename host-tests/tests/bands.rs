@@ -158,6 +158,27 @@ fn any_size_from_one_pixel_on() {
 }
 
 #[test]
+fn extreme_sizes_are_the_same_on_both_back_ends_and_in_bands() {
+    let mut renderers: Vec<Renderer> =
+        devices().into_iter().map(|device| renderer(builtin::to_scene("spheres").unwrap(), device)).collect();
+    for (width, height) in [(1, 1), (2, 1), (3, 5), (5, 3), (1, 4096), (4096, 1), (7, 1023)] {
+        for (samples, block, mode) in
+            [(1, 2, Mode::Adaptive), (1, 4, Mode::Adaptive), (2, 2, Mode::Adaptive), (1, 2, Mode::Full)]
+        {
+            let options = RenderOptions { width, height, samples, block, mode, ..RenderOptions::default() };
+            let mut drawn = Vec::new();
+            for renderer in &mut renderers {
+                let (whole, classes) = draw(renderer, &options);
+                assert_eq!(whole.pixels.len(), (width * height) as usize);
+                assert_same_in_bands(renderer, &options, &[height.div_ceil(3) * samples]);
+                drawn.push((whole.pixels, classes));
+            }
+            assert!(drawn.iter().all(|frame| frame == &drawn[0]), "{width}x{height}, blocks of {block}, {mode:?}");
+        }
+    }
+}
+
+#[test]
 #[ignore = "long: real scenes in bands of five heights"]
 fn real_scenes_are_the_same_in_bands() {
     let folder = rarefy_host_tests::command::root().join("../shared/scenes");

@@ -64,6 +64,10 @@ impl Door {
         let label = launch.label;
         let plan = self.plan(launch)?;
         let mut slicer = Slicer::new(plan.groups, plan.step);
+        let local = plan.local.map(|[width, height]| [width, height, 1]);
+        // PoCL compiles a kernel once for launches that begin at zero and once for others: with an offset along an axis
+        // that no kernel looks at, the first slice is like the others, and kernels are compiled once.
+        let aside = usize::from(self.is_cpu());
         let state = &mut *lock(&self.state);
         state.timing.harvest(&mut state.planner, Wait::No)?;
         set_args(launch)?;
@@ -75,17 +79,19 @@ impl Door {
             if let Some(code) = self.strike(state) {
                 return Err(codes::error(format!("clEnqueueNDRangeKernel of `{label}`"), code));
             }
+            let offset = [slice.offset[0], slice.offset[1], aside];
+            let size = [slice.size[0], slice.size[1], 1];
             // SAFETY: all arguments are set to live objects of this context and stay alive until the call has retained
-            // them; the arrays have the two entries that the dimension says. What the kernel does within its buffers is
+            // them; the arrays have the three entries that the dimension says. What the kernel does within its buffers is
             // the kernel's: its source is part of this crate.
             let event = unsafe {
                 enqueue_nd_range_kernel(
                     self.shared.queue.raw(),
                     launch.kernel.raw(),
-                    2,
-                    slice.offset.as_ptr(),
-                    slice.size.as_ptr(),
-                    plan.local.as_ref().map_or(std::ptr::null(), |local| local.as_ptr()),
+                    3,
+                    offset.as_ptr(),
+                    size.as_ptr(),
+                    local.as_ref().map_or(std::ptr::null(), |local| local.as_ptr()),
                     0,
                     std::ptr::null(),
                 )
