@@ -10,7 +10,7 @@
 //! use rarefy::renderer::{DeviceChoice, Keep, Renderer, RendererOptions};
 //!
 //! fn main() -> rarefy::Result<()> {
-//!     let monitor = rarefy::Monitor::default(); // see rarefy::monitor
+//!     let monitor = rarefy::Monitor::default(); // progress, previews, cancel: see rarefy::monitor
 //!     let scene = rarefy::builtin::to_scene("spheres")?; // files: rarefy::scene::load(path, &monitor)?
 //!     let device = RendererOptions { device: DeviceChoice::Auto, ..RendererOptions::default() };
 //!     let mut renderer = Renderer::new(scene, &device, &monitor)?;

@@ -241,7 +241,9 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
 
-    fn listening() -> (Monitor, Arc<Mutex<Vec<(String, f32)>>>) {
+    type Heard = Arc<Mutex<Vec<(String, f32)>>>;
+
+    fn listening() -> (Monitor, Heard) {
         let heard = Arc::new(Mutex::new(Vec::new()));
         let log = Arc::clone(&heard);
         let monitor = Monitor::new(move |event| match event {

@@ -3,13 +3,15 @@
 //!
 //! Cancels at MOMENTS (200) random moments each: loading a scene and making a renderer of it, adaptive and full frames,
 //! supersampled frames in bands, on the CPU twin and on the first OpenCL device. Prints the median, the 95th percentile
-//! and the longest time from the cancel to the return, in ms, of the moments that met work. Programs are built before.
+//! and the longest time from the cancel to the return, in ms, of the moments that met work, and what was being done in
+//! the three longest. Programs are built before.
 //! SCENE is a folder; without one, `../shared/scenes/living-room` if it is there, else the built-in café.
 
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
-use rarefy::monitor::{Cancel, Monitor};
+use rarefy::monitor::{Cancel, Event, Monitor};
 use rarefy::options::{Mode, RenderOptions};
 use rarefy::renderer::{DeviceChoice, Keep, Renderer, RendererOptions};
 use rarefy::{Error, Result, builtin, scene};
@@ -35,7 +37,14 @@ fn measure(name: &str, moments: u32, work: &mut dyn FnMut(&Monitor) -> Result<()
     let mut latencies = Vec::new();
     for _ in 0..moments {
         let cancel = Cancel::default();
-        let monitor = Monitor::default().with_cancel(&cancel);
+        let phase = Arc::new(Mutex::new(String::new()));
+        let last = Arc::clone(&phase);
+        let monitor = Monitor::new(move |event| {
+            if let (Event::Progress { phase, share }, Ok(mut last)) = (event, last.lock()) {
+                *last = format!("{phase} at {:.0} %", 100.0 * share);
+            }
+        })
+        .with_cancel(&cancel);
         let pause = whole.mul_f64(random.unit());
         let (done, returned, cancelled) = std::thread::scope(|threads| {
             let canceller = threads.spawn(move || {
@@ -49,19 +58,23 @@ fn measure(name: &str, moments: u32, work: &mut dyn FnMut(&Monitor) -> Result<()
             (done, returned, canceller.join().unwrap_or(returned))
         });
         match done {
-            Err(Error::Cancelled) => latencies.push(returned.saturating_duration_since(cancelled)),
+            Err(Error::Cancelled) => {
+                let phase = phase.lock().map(|phase| phase.clone()).unwrap_or_default();
+                latencies.push((returned.saturating_duration_since(cancelled), phase));
+            }
             other => other?,
         }
     }
     latencies.sort();
-    let ms = |at: usize| latencies.get(at).copied().unwrap_or(Duration::ZERO).as_secs_f64() * 1e3;
+    let ms = |at: usize| latencies.get(at).map_or(Duration::ZERO, |found| found.0).as_secs_f64() * 1e3;
     let count = latencies.len();
     println!(
-        "{name:34} {:8.0} {count:8} {:8.1} {:8.1} {:8.1}",
+        "{name:34} {:8.0} {count:8} {:8.1} {:8.1} {:8.1}  {}",
         whole.as_secs_f64() * 1e3,
         ms(count / 2),
         ms((count * 95).div_ceil(100).saturating_sub(1)),
-        ms(count.saturating_sub(1))
+        ms(count.saturating_sub(1)),
+        latencies.iter().rev().take(3).map(|(_, phase)| phase.as_str()).collect::<Vec<_>>().join(", ")
     );
     Ok(())
 }
