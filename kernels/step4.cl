@@ -15,14 +15,18 @@
 // source, one ray tree per listed pixel.
 // Twin: src/twin/step4.rs.
 #include "types.h"
+#include "common/bridge.clh"
 #include "common/pack.clh"
 #include "common/trace.clh"
 
-// Does what pixel (x, y) hit fill the three pixels on its far side from (nx, ny) and one beside it, too? Then it is thick
-// and, if its edge is straight, ends here: the references of (nx, ny) would have met it otherwise. With neither pixel
-// beside it, (x, y) may be where something thin begins.
-static inline bool is_thick(__constant FrameParams *frame, const StepParams *step, __global const uint *attributes,
-                            __global const uint *color, const Attributes *a, uint x, uint y, uint nx, uint ny) {
+// Does what pixel (x, y) hit, by the looks of the pixels around, pass (nx, ny) by? An edge or a line is taken to be
+// straight. What fills the three pixels on the far side from (nx, ny) and one beside it is thick and ends here: the
+// references of (nx, ny) would have met it otherwise. (With neither pixel beside it, (x, y) may be where something thin
+// begins. Reflected patterns, which differ in colours alone, have no such edges.) What fills both pixels beside (x, y)
+// but not the far one is a line that runs along.
+static inline bool passes_by(__constant FrameParams *frame, const StepParams *step, __global const uint *attributes,
+                             __global const uint *color, const Attributes *a, bool is_surface, uint x, uint y, uint nx,
+                             uint ny) {
   uint filled = 0u;
   for (uint k = 0u; k < 6u; ++k) {
     // The far side's three, and beside (x, y) both; (x, y) itself is no question.
@@ -32,7 +36,9 @@ static inline bool is_thick(__constant FrameParams *frame, const StepParams *ste
     const Attributes b = load_attributes(attributes, frame->plane_pitch, plane_index(frame, bx, by));
     if (!hits_differ(step, a, &b, color[color_index(frame, x, y)], color[color_index(frame, bx, by)])) filled |= 1u << k;
   }
-  return (filled & 7u) == 7u && (filled & 40u);
+  const bool is_thick = (filled & 7u) == 7u && (filled & 40u);
+  const bool runs_along = !(filled & 2u) && (filled & 40u) == 40u;
+  return (is_thick && is_surface) || runs_along;
 }
 
 // Does pixel (x, y) spread to its neighbour (nx, ny): is it a source, is that interpolated, and is it something else?
@@ -44,23 +50,28 @@ static inline bool spreads(__constant FrameParams *frame, const StepParams *step
   if ((attributes[PLANE_CLASS * pitch + to] & CLASS_MASK) != CLASS_INTERPOLATED) return false;
   const Attributes a = load_attributes(attributes, pitch, at), b = load_attributes(attributes, pitch, to);
   if (!hits_differ(step, &a, &b, color[color_index(frame, x, y)], color[color_index(frame, nx, ny)])) return false;
-  // What interpolation had missed is thin, and reflected patterns have no straight edges: both spread anyway.
-  return !(step->flags & STEP_THIN_ONLY) || from_class == CLASS_CORRECTED || !surfaces_differ(step, &a, &b) ||
-         !is_thick(frame, step, attributes, color, &a, x, y, nx, ny);
+  // What interpolation had missed is thin and may turn anywhere.
+  return !(step->flags & STEP_THIN_ONLY) || from_class == CLASS_CORRECTED ||
+         !passes_by(frame, step, attributes, color, &a, surfaces_differ(step, &a, &b), x, y, nx, ny);
 }
 
-// Item i looks from source i / 4 in direction i % 4: left, right, up, down. NO_PIXEL beyond the window, and from
-// sources that lie neither in its interior nor in the row above or below.
-static inline uint neighbour(__constant FrameParams *frame, const StepParams *step, __global const uint *list, uint i) {
-  const uint source = list[step->source_offset + (i >> 2)];
+// How many items a source has: one for each neighbour and, with STEP_BRIDGE, one for a pixel farther away.
+static inline uint ways(const StepParams *step) { return step->flags & STEP_BRIDGE ? 5u : 4u; }
+
+// The pixel that item i looks at from its source: left, right, up, down, across a gap. NO_PIXEL beyond the window, and
+// from sources that lie neither in its interior nor in the row above or below.
+static inline uint target(__constant FrameParams *frame, const StepParams *step, __global const uint *attributes,
+                          __global const uint *color, __global const uint *list, uint i) {
+  const uint source = list[step->source_offset + i / ways(step)];
   const uint x = source & 0xffffu, y = source >> 16;
   // Farther out in the context, what a source is compared with may be missing.
   if (y + 1u < frame->interior_begin || y > frame->interior_end) return NO_PIXEL;
-  switch (i & 3u) {
+  switch (i % ways(step)) {
   case 0u: return x > 0u ? source - 1u : NO_PIXEL;
   case 1u: return x + 1u < frame->width ? source + 1u : NO_PIXEL;
   case 2u: return y > frame->window_begin ? source - 0x10000u : NO_PIXEL;
-  default: return y + 1u < frame->window_end ? source + 0x10000u : NO_PIXEL;
+  case 3u: return y + 1u < frame->window_end ? source + 0x10000u : NO_PIXEL;
+  default: return bridged_pixel(frame, step, attributes, color, x, y);
   }
 }
 
@@ -70,8 +81,8 @@ static inline uint pixel_plane_index(__constant FrameParams *frame, uint pixel) 
 
 // Only interpolated pixels have a claim that means anything: check_pixel resets it, other pixels hold what was there.
 static inline bool claimed_by(__constant FrameParams *frame, const StepParams *step, __global const uint *attributes,
-                              __global const uint *list, uint i) {
-  const uint pixel = neighbour(frame, step, list, i);
+                              __global const uint *color, __global const uint *list, uint i) {
+  const uint pixel = target(frame, step, attributes, color, list, i);
   if (pixel == NO_PIXEL) return false;
   const uint pitch = frame->plane_pitch;
   const uint to = pixel_plane_index(frame, pixel);
@@ -79,16 +90,17 @@ static inline bool claimed_by(__constant FrameParams *frame, const StepParams *s
          (attributes[PLANE_CLASS * pitch + to] & CLASS_MASK) == CLASS_INTERPOLATED;
 }
 
-#define PACK_FLAG(i) claimed_by(frame, &step, attributes, list, i)
-#define PACK_PIXEL(i) neighbour(frame, &step, list, i)
+#define PACK_FLAG(i) claimed_by(frame, &step, attributes, color, list, i)
+#define PACK_PIXEL(i) target(frame, &step, attributes, color, list, i)
 
-// Several sources may want the same neighbour: the lowest item claims it.
+// Several sources may want the same pixel: the lowest item claims it.
 static void mark_item(__constant FrameParams *frame, const StepParams *step, __global uint *attributes,
                       __global const uint *list, __global const uint *color, uint i) {
-  const uint pixel = neighbour(frame, step, list, i);
+  const uint pixel = target(frame, step, attributes, color, list, i);
   if (pixel == NO_PIXEL) return;
-  const uint source = list[step->source_offset + (i >> 2)];
-  if (spreads(frame, step, attributes, color, source & 0xffffu, source >> 16, pixel & 0xffffu, pixel >> 16))
+  const uint source = list[step->source_offset + i / ways(step)];
+  if (i % ways(step) == 4u ||
+      spreads(frame, step, attributes, color, source & 0xffffu, source >> 16, pixel & 0xffffu, pixel >> 16))
     atomic_min(attributes + PLANE_CLAIM * frame->plane_pitch + pixel_plane_index(frame, pixel), i);
 }
 
@@ -99,7 +111,8 @@ __kernel void step4_mark(__constant FrameParams *frame, const StepParams step, _
 }
 
 __kernel void step4_count(__constant FrameParams *frame, const StepParams step, __global const uint *attributes,
-                          __global const uint *list, __global uint *out_masks, __global uint *out_sums) {
+                          __global const uint *color, __global const uint *list, __global uint *out_masks,
+                          __global uint *out_sums) {
   const uint chunk = get_global_id(0);
   if (chunk * 32u < step.item_count) PACK_COUNT(chunk, step.item_count)
 }
@@ -108,8 +121,9 @@ __kernel void step4_scan(const StepParams step, __global uint *sums, __local uin
   pack_scan(&step, sums, scratch);
 }
 
-__kernel void step4_scatter(__constant FrameParams *frame, const StepParams step, __global const uint *masks,
-                            __global const uint *sums, __global const uint *list, __global uint *out_list) {
+__kernel void step4_scatter(__constant FrameParams *frame, const StepParams step, __global const uint *attributes,
+                            __global const uint *color, __global const uint *masks, __global const uint *sums,
+                            __global const uint *list, __global uint *out_list) {
   const uint chunk = get_global_id(0), chunk_count = (step.item_count + 31u) / 32u;
   if (chunk < chunk_count) PACK_SCATTER(chunk, chunk_count)
 }
@@ -152,10 +166,10 @@ __kernel void step4_tail(SCENE_PARAMS, const StepParams step, __global uint *att
     const uint share = (round.item_count + lanes - 1u) / lanes;
     const uint begin = lane * share, end = min(begin + share, round.item_count);
     uint wanted = 0u, total;
-    for (uint i = begin; i < end; ++i) wanted += claimed_by(frame, &round, attributes, list, i) ? 1u : 0u;
+    for (uint i = begin; i < end; ++i) wanted += claimed_by(frame, &round, attributes, out_color, list, i) ? 1u : 0u;
     uint next = round.list_offset + inclusive_prefix(wanted, scratch, &total) - wanted;
     for (uint i = begin; i < end; ++i) {
-      if (claimed_by(frame, &round, attributes, list, i)) list[next++] = neighbour(frame, &round, list, i);
+      if (claimed_by(frame, &round, attributes, out_color, list, i)) list[next++] = target(frame, &round, attributes, out_color, list, i);
     }
     barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE);
     for (uint item = lane; item < total; item += lanes)

@@ -14,6 +14,8 @@ pub const FILES: &[(&str, &str)] = &[
     ("common/shade.clh", include_str!("../kernels/common/shade.clh")),
     ("common/attributes.clh", include_str!("../kernels/common/attributes.clh")),
     ("common/trace.clh", include_str!("../kernels/common/trace.clh")),
+    ("common/known_shadows.clh", include_str!("../kernels/common/known_shadows.clh")),
+    ("common/bridge.clh", include_str!("../kernels/common/bridge.clh")),
     ("common/similarity.clh", include_str!("../kernels/common/similarity.clh")),
     ("common/pack.clh", include_str!("../kernels/common/pack.clh")),
     ("common/pack_order.clh", include_str!("../kernels/common/pack_order.clh")),

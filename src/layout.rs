@@ -109,12 +109,19 @@ shared_constants! {
     STEP_COMPARE_SHADING = 16;
     /// Step flag: step4's listed pixels had their rays already and are only marked.
     STEP_SETTLE = 32;
-    /// Step flag: in step4 traced pixels at the edge of something thick do not spread.
+    /// Step flag: in step4 traced pixels do not spread to what a straight edge or line would pass by.
     STEP_THIN_ONLY = 64;
     /// Step flag: a pixel whose own references fail may be interpolated between other neighbours.
     STEP_OTHER_PAIRS = 128;
     /// Step flag: texture coordinates are compared and interpolated the shorter way around.
     STEP_UNWRAP = 256;
+    /// Step flag: lights about which a traced pixel's references agree need no shadow ray.
+    STEP_REUSE_SHADOWS = 512;
+    /// Step flag: in step4 sources also look for pixels between two parts of something thin.
+    STEP_BRIDGE = 1024;
+
+    /// How many columns to either side step4 looks for the other part of something thin.
+    BRIDGE_REACH = 16;
 
     /// A round of step4 with at most this many sources is left to step4_tail: a wave's worth.
     TAIL_SOURCES = 64;
@@ -174,6 +181,8 @@ shared_constants! {
 pub const FAR_AWAY: f32 = 1.0e30;
 /// A chain of secondary rays ends when no channel of its weight reaches this.
 pub const WEIGHT_CUTOFF: f32 = 1.0 / 512.0;
+/// A mirror or glass whose own colour has at most this weight has little light of its own.
+pub const LITTLE_OWN_LIGHT: f32 = 0.5;
 /// Linear values below this are black; the float whose leading half word is [`SRGB_FIRST_BUCKET`].
 pub const SRGB_LEAST: f32 = f32::from_bits(SRGB_FIRST_BUCKET << 16);
 
@@ -196,7 +205,12 @@ pub fn build_options(flavour: BuildFlavour) -> String {
         // Writing to a String cannot fail.
         let _ = write!(options, "-D{name}={value}u ");
     }
-    for (name, value) in [("FAR_AWAY", FAR_AWAY), ("WEIGHT_CUTOFF", WEIGHT_CUTOFF), ("SRGB_LEAST", SRGB_LEAST)] {
+    for (name, value) in [
+        ("FAR_AWAY", FAR_AWAY),
+        ("WEIGHT_CUTOFF", WEIGHT_CUTOFF),
+        ("LITTLE_OWN_LIGHT", LITTLE_OWN_LIGHT),
+        ("SRGB_LEAST", SRGB_LEAST),
+    ] {
         let _ = write!(options, "-D{name}={value:?}f ");
     }
     for (on, name) in

@@ -152,9 +152,15 @@ pub struct RenderOptions {
     pub lenient_tests: u32,
     /// From which difference of a colour channel of 0 to 255 on two references look different; 0 makes no test lenient.
     pub t_visible: u32,
-    /// Post-correction by [`CorrectionMethod::Converged`]: traced pixels at the edge of something thick do not spread;
-    /// beyond the paper.
+    /// A traced pixel that lies between two points of one object, and fails GC or SH alone, sends shadow rays only to
+    /// lights about which these disagree; beyond the paper.
+    pub reuse_shadows: bool,
+    /// Post-correction by [`CorrectionMethod::Converged`]: traced pixels do not spread to neighbours that a straight edge
+    /// or line would pass by; beyond the paper.
     pub correction_thin_only: bool,
+    /// Post-correction by [`CorrectionMethod::Converged`]: also looks at pixels between two parts of a thin line that
+    /// shows above and below them; beyond the paper.
+    pub correction_bridges: bool,
     /// Post-correction: from which difference of a colour channel of 0 to 255 on a change within one object counts.
     pub correction_t_visible: u32,
     /// Post-correction: least dot product of normals that are taken to be the same.
@@ -186,10 +192,12 @@ impl Default for RenderOptions {
             unwrap_textures: true,
             lenient_tests: FAIL_SH,
             t_visible: 12,
+            reuse_shadows: true,
             correction_thin_only: true,
+            correction_bridges: true,
             correction_t_visible: 6,
             correction_t_norm: 0.9,
-            correction_t_gcol: 0.05,
+            correction_t_gcol: 0.07,
             band_rows: None,
         }
     }
@@ -210,7 +218,9 @@ impl RenderOptions {
             unwrap_textures: false,
             lenient_tests: 0,
             t_visible: 0,
+            reuse_shadows: false,
             correction_thin_only: false,
+            correction_bridges: false,
             correction_t_visible: 0,
             ..RenderOptions::default()
         }

@@ -5,7 +5,7 @@
 use crate::backend::{Backend, FrameBuffer};
 use crate::error::Result;
 use crate::layout::*;
-use crate::options::{Correction, CorrectionMethod, Interpolation, RenderOptions, Tolerances};
+use crate::options::{Correction, CorrectionMethod, Interpolation, RenderOptions};
 use crate::stage::Kernel;
 use crate::twin::pack::grid_items;
 use crate::twin::planes::plane_index;
@@ -194,8 +194,7 @@ fn grid(frame: &FrameParams, origin: (u32, u32), step: (u32, u32)) -> StepParams
 /// columns of A2 by themselves where they may also use what the even ones found.
 fn adaptive_grids(frame: &FrameParams, stride: u32, options: &RenderOptions, extent: f32) -> Vec<AdaptiveGrid> {
     let half = stride / 2;
-    let tolerances = if stride == 2 { &options.tolerances } else { &options.coarse_tolerances };
-    let checks = |step| with_checks(step, tolerances, options, extent);
+    let checks = |step| with_checks(step, stride == 2, options, extent);
     let step2 = checks(StepParams { reference_dx: half, ..grid(frame, (half, 0), (stride, stride)) });
     let step3 = |left, width| checks(StepParams { reference_dy: half, ..grid(frame, (left, half), (width, stride)) });
     let a1 = AdaptiveGrid { check: Kernel::Step2a, pack: STEP2B, trace: Kernel::Step2c, params: step2 };
@@ -209,10 +208,13 @@ fn adaptive_grids(frame: &FrameParams, stride: u32, options: &RenderOptions, ext
     }
 }
 
-fn with_checks(step: StepParams, tolerances: &Tolerances, options: &RenderOptions, extent: f32) -> StepParams {
+fn with_checks(step: StepParams, is_finest: bool, options: &RenderOptions, extent: f32) -> StepParams {
+    let tolerances = if is_finest { &options.tolerances } else { &options.coarse_tolerances };
     let perspective = if options.interpolation == Interpolation::Perspective { STEP_PERSPECTIVE } else { 0 };
     let gcol_linear = if options.gcol_linear { STEP_GCOL_LINEAR } else { 0 };
     let unwrap = if options.unwrap_textures { STEP_UNWRAP } else { 0 };
+    // References four pixels apart agree about too little.
+    let reuse_shadows = if options.reuse_shadows && is_finest { STEP_REUSE_SHADOWS } else { 0 };
     StepParams {
         t_pos: tolerances.t_pos * extent,
         t_norm: tolerances.t_norm,
@@ -223,7 +225,7 @@ fn with_checks(step: StepParams, tolerances: &Tolerances, options: &RenderOption
         // The strictest tolerances trace every pixel, whatever it looks like.
         lenient_tests: if tolerances.t_pos > 0.0 { options.lenient_tests } else { 0 },
         t_visible: options.t_visible,
-        flags: STEP_STORE | perspective | gcol_linear | unwrap,
+        flags: STEP_STORE | perspective | gcol_linear | unwrap | reuse_shadows,
         ..step
     }
 }
@@ -280,27 +282,35 @@ fn correct(
     // Lines are swept side by side: what lies beside a line may be changing.
     let converged = options.correction_method == CorrectionMethod::Converged;
     let thin_only = if options.correction_thin_only && converged { STEP_THIN_ONLY } else { 0 };
+    let reuse_shadows = if options.reuse_shadows { STEP_REUSE_SHADOWS } else { 0 };
     let step = StepParams {
-        flags: flags | gcol_linear | thin_only,
+        flags: flags | gcol_linear | thin_only | reuse_shadows,
         t_visible: options.correction_t_visible,
         t_norm: options.correction_t_norm,
         t_gcol: options.correction_t_gcol,
         ..bytemuck::Zeroable::zeroed()
     };
     match options.correction_method {
-        CorrectionMethod::Converged => correct_converged(backend, &step, given, listed),
+        CorrectionMethod::Converged => correct_converged(backend, &step, options.correction_bridges, given, listed),
         CorrectionMethod::Sweeps => correct_by_sweeps(backend, frame, &step),
     }
 }
 
 /// Rounds of mark, pack and trace, each from the pixels that the last one traced, until none is wanted.
-fn correct_converged(backend: &mut dyn Backend, step: &StepParams, given: &GivenList, listed: u32) -> Result<u32> {
+fn correct_converged(
+    backend: &mut dyn Backend,
+    step: &StepParams,
+    bridges: bool,
+    given: &GivenList,
+    listed: u32,
+) -> Result<u32> {
     let settle = StepParams { item_count: given.settled, flags: step.flags | STEP_SETTLE, ..*step };
     run_list(backend, Kernel::Step4Trace, &settle)?;
     let mut list_offset = listed;
-    // Traced pixels are asked first: whether they are at the edge of something thick is seen before any correction.
+    // Traced pixels are asked first: what edges and lines pass by, and where gaps are, is seen before any correction.
     if given.first_time {
-        list_offset += fire_from(backend, step, given.len(), listed - given.len(), list_offset)?;
+        let first = StepParams { flags: step.flags | if bridges { STEP_BRIDGE } else { 0 }, ..*step };
+        list_offset += fire_from(backend, &first, given.len(), listed - given.len(), list_offset)?;
     }
     if given.fired > 0 {
         let fire = StepParams { list_offset: given.settled, item_count: given.fired, ..*step };
@@ -330,7 +340,8 @@ fn fire_from(
     if sources == 0 {
         return Ok(0);
     }
-    let round = StepParams { source_offset, list_offset, item_count: 4 * sources, ..*step };
+    let ways = if step.flags & STEP_BRIDGE != 0 { 5 } else { 4 };
+    let round = StepParams { source_offset, list_offset, item_count: ways * sources, ..*step };
     backend.run(Kernel::Step4Mark, &round)?;
     let count = pack(backend, &STEP4, &round)?;
     run_list(backend, Kernel::Step4Trace, &StepParams { item_count: count, ..round })?;

@@ -216,8 +216,8 @@ impl Kernel {
             Kernel::Step2bScatter | Kernel::Step3bScatter => &[Step, Masks, Sums, List],
             Kernel::Step4Tail => &[Scene, Step, Attributes, Color, Counters, List, Sums, Scratch],
             Kernel::Step4Mark => &[Frame, Step, Attributes, List, Color],
-            Kernel::Step4Count => &[Frame, Step, Attributes, List, Masks, Sums],
-            Kernel::Step4Scatter => &[Frame, Step, Masks, Sums, List, List],
+            Kernel::Step4Count => &[Frame, Step, Attributes, Color, List, Masks, Sums],
+            Kernel::Step4Scatter => &[Frame, Step, Attributes, Color, Masks, Sums, List, List],
         }
     }
 }

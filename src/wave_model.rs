@@ -20,8 +20,8 @@ use crate::twin::planes::plane_index;
 pub const WAVES: [usize; 3] = [32, 64, 128];
 /// A ray-triangle test: about as many instructions as a step, and six times its bytes, mostly from a cache.
 pub const TRIANGLE_TEST: f64 = 1.5;
-/// A shaded point: texture, highlight, lights. Makes the checks cost what the paper measured.
-pub const SHADED_POINT: f64 = 20.0;
+/// A shaded point: texture, highlight, lights. Makes all checks of a frame cost what the paper measured.
+pub const SHADED_POINT: f64 = 16.0;
 /// Bytes of global memory that take as long as a step where all lanes read or write side by side.
 pub const BYTES_PER_STEP: f64 = 40.0;
 /// A launch among others in the queue: 0.04 ms, in steps of 4 ns.

@@ -13,6 +13,7 @@ use rarefy::renderer::{DeviceChoice, Keep, Renderer, RendererOptions};
 use rarefy::scene::{Light, Material, Object, Scene, Surface, Texture};
 use rarefy::scene_buffers::{SceneBuffers, Shading};
 use rarefy::twin::SceneArgs;
+use rarefy::twin::known_shadows::KnownShadows;
 use rarefy::twin::scene_args::Work;
 use rarefy::twin::shade::{ShadePoint, shade_local};
 use rarefy::twin::trace::{SurfacePoint, gather_secondary, shadow_test, surface_point};
@@ -217,7 +218,7 @@ impl Stand {
             return None;
         }
         let point = surface_point(&scene, o, d, &hit);
-        let shadow_bits = shadow_test(&scene, &point, &mut work);
+        let shadow_bits = shadow_test(&scene, &point, &KnownShadows::default(), &mut work);
         let gcol = gather_secondary(&scene, &point, d, &mut work);
         let shade = ShadePoint {
             material: point.material,
@@ -230,6 +231,24 @@ impl Stand {
         let local = shade_local(&scene, &shade, -d);
         Some(Look { triangle: hit.triangle, point, shadow_bits, local, gcol, work })
     }
+}
+
+/// A wall, and before it lines of half a pixel's height at 64x64 pixels: each begins at a height in pixels at the left
+/// border and falls by one pixel in so many columns. Each row shows dashes of half as many pixels. The eye holds the
+/// light, so that nothing is in shadow.
+pub fn dashes(lines: &[(f32, f32)]) -> Scene {
+    let half_height_degrees = 0.25_f32.atan().to_degrees();
+    let mut builder = SceneBuilder::new("dashes").camera(v(0.0, 0.0, 4.0), v(0.0, 0.0, 0.0), 2.0 * half_height_degrees);
+    builder = builder.light(v(0.0, 0.0, 4.0), 8.0);
+    builder.object(matte(v(0.8, 0.2, 0.2)));
+    builder.wall(Vec2::splat(-3.0), Vec2::splat(3.0), 0.0);
+    let place = |x: f32, y: f32| v(x / 32.0 - 1.0, 1.0 - y / 32.0, 0.001);
+    for &(top, run) in lines {
+        builder.object(matte(v(0.1, 0.1, 0.9)));
+        let end = top + 80.0 / run;
+        builder.quad([place(-8.0, top + 0.5), place(72.0, end + 0.5), place(72.0, end), place(-8.0, top)]);
+    }
+    builder.build(40.0)
 }
 
 /// A renderer on the CPU twin.

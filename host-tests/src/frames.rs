@@ -50,9 +50,13 @@ impl Prepared {
         Prepared { scene, buffers }
     }
 
-    /// A built-in scene, or [`zoo`].
+    /// A built-in scene, [`zoo`], or [`crate::fixtures::dashes`] that fall and rise.
     pub fn named(name: &str) -> Self {
-        let scene = if name == "zoo" { zoo() } else { builtin::to_scene(name).unwrap() };
+        let scene = match name {
+            "zoo" => zoo(),
+            "dashes" => crate::fixtures::dashes(&[(12.3, 6.0), (52.3, -9.0)]),
+            _ => builtin::to_scene(name).unwrap(),
+        };
         Prepared::new(scene, Shading::Full)
     }
 

@@ -58,8 +58,8 @@ impl Planes {
             && self.differ(from, to, shadows)
     }
 
-    /// Do the three pixels on the far side of `from`, and one beside it, show what it shows?
-    fn is_thick(&self, from: usize, to: usize, shadows: bool) -> bool {
+    /// Is `from` at the straight edge of something thick, or on a line that runs along, so that `to` is passed by?
+    fn passes_by(&self, from: usize, to: usize, shadows: bool) -> bool {
         let (width, height) = (self.width as isize, (self.class.len() / self.width) as isize);
         let at = |pixel: usize| (pixel as isize % width, pixel as isize / width);
         let ((x, y), (nx, ny)) = (at(from), at(to));
@@ -69,7 +69,32 @@ impl Planes {
                 && (0..height).contains(&by)
                 && !self.differ(from, (by * width + bx) as usize, shadows)
         };
-        (-1..=1).all(|along| fills(1, along)) && (fills(0, -1) || fills(0, 1))
+        let is_thick = (-1..=1).all(|along| fills(1, along)) && (fills(0, -1) || fills(0, 1));
+        is_thick || !fills(1, 0) && fills(0, -1) && fills(0, 1)
+    }
+
+    /// Does the pixel differ from those above and below it?
+    fn is_thin(&self, at: usize, shadows: bool) -> bool {
+        self.differ(at, at - self.width, shadows) && self.differ(at, at + self.width, shadows)
+    }
+
+    /// The interpolated pixel beside `from` that lies midway between two parts of something thin, one of them above or
+    /// below `from`.
+    fn bridged(&self, from: usize, shadows: bool) -> Option<usize> {
+        let (width, height) = (self.width, self.class.len() / self.width);
+        let (x, y) = ((from % width) as isize, from / width);
+        if y % 2 == 0 || y < 2 || y + 2 >= height {
+            return None;
+        }
+        let (up, down) = (from - width, from + width);
+        let (near, across) = if self.is_thin(up, shadows) { (up, y + 1) } else { (down, y - 1) };
+        let sides = (1..=BRIDGE_REACH as isize).flat_map(|k| [-k, k]);
+        let parts = sides.filter(|k| (0..width as isize).contains(&(x + 2 * k))).filter(|k| {
+            let part = across * width + (x + 2 * k) as usize;
+            !self.differ(near, part, shadows) && self.is_thin(part, shadows)
+        });
+        let middle = y * width + (x + parts.into_iter().next().filter(|_| self.is_thin(near, shadows))?) as usize;
+        (self.is(middle, &[CLASS_INTERPOLATED]) && self.differ(near, middle, shadows)).then_some(middle)
     }
 
     fn fired(&self) -> Vec<usize> {
@@ -86,25 +111,34 @@ impl Planes {
 
 /// The worklist. `order` says which waiting pixel is next; `full` what a ray finds.
 fn least_fixed_point(before: &Planes, full: &Planes, shadows: bool, order: &mut dyn FnMut(usize) -> usize) -> Planes {
-    fixed_point(before, full, shadows, false, order)
+    fixed_point(before, full, shadows, Rules::default(), order)
 }
 
-/// With `thin_only` what the traced pixels saw before any correction decides which of them are at the edge of something
-/// thick.
+/// What goes beyond the paper's rule.
+#[derive(Debug, Clone, Copy, Default)]
+struct Rules {
+    thin_only: bool,
+    bridges: bool,
+}
+
+/// What the traced pixels saw before any correction decides which of them pass a neighbour by, and where gaps are.
 fn fixed_point(
     before: &Planes,
     full: &Planes,
     shadows: bool,
-    thin_only: bool,
+    rules: Rules,
     order: &mut dyn FnMut(usize) -> usize,
 ) -> Planes {
     let mut now = before.clone();
     let mut waiting: Vec<usize> = (0..now.class.len()).filter(|&at| now.is(at, &[CLASS_TRACED])).collect();
     while !waiting.is_empty() {
         let from = waiting.swap_remove(order(waiting.len()));
-        for to in now.neighbours(from) {
-            let spared = thin_only && before.is(from, &[CLASS_TRACED]) && before.is_thick(from, to, shadows);
-            if spared || !now.spreads(from, to, shadows) {
+        let is_traced = before.is(from, &[CLASS_TRACED]);
+        let bridged = if rules.bridges && is_traced { before.bridged(from, shadows) } else { None };
+        for to in now.neighbours(from).chain(bridged) {
+            let spared = rules.thin_only && is_traced && before.passes_by(from, to, shadows);
+            let reached = Some(to) == bridged && now.is(to, &[CLASS_INTERPOLATED]);
+            if !reached && (spared || !now.spreads(from, to, shadows)) {
                 continue;
             }
             let old = (now.object[to], now.shadow[to]);
@@ -121,8 +155,15 @@ fn fixed_point(
 
 fn adaptive(width: u32, height: u32, block: u32, correction: Correction, method: CorrectionMethod) -> RenderOptions {
     let options = options(Mode::Adaptive, width, height, block);
-    // The paper's rule; thin things only: see below.
-    RenderOptions { correction, correction_method: method, correction_thin_only: false, ..options }
+    // The paper's rule; what goes beyond it: see below.
+    RenderOptions {
+        correction,
+        correction_method: method,
+        correction_thin_only: false,
+        correction_bridges: false,
+        reuse_shadows: false,
+        ..options
+    }
 }
 
 fn full(renderer: &mut Renderer, width: u32, height: u32) -> Planes {
@@ -208,9 +249,10 @@ fn correction_of_thin_things_is_the_same_in_any_order_and_spares_edges_of_thick_
         let full = full(renderer, options.width, options.height);
         let before = without_correction(renderer, &options);
         let found = planes(renderer, &thin_only);
-        let expected = fixed_point(&before, &full, shadows, true, &mut |n| n - 1);
+        let rules = Rules { thin_only: true, bridges: false };
+        let expected = fixed_point(&before, &full, shadows, rules, &mut |n| n - 1);
         assert!(found == expected, "{name}: {:?} instead of {:?}", found.fired(), expected.fired());
-        let at_random = fixed_point(&before, &full, shadows, true, &mut |n| random.below(n));
+        let at_random = fixed_point(&before, &full, shadows, rules, &mut |n| random.below(n));
         assert!(at_random == expected, "{name}: at random");
         let all = planes(renderer, &options);
         assert!(found.fired().iter().all(|at| all.fired().contains(at)), "{name}: fired more than without the rule");
@@ -219,6 +261,55 @@ fn correction_of_thin_things_is_the_same_in_any_order_and_spares_edges_of_thick_
     });
     println!("{fired} of {of} pixels fired");
     assert!(fired > 500 && fired * 10 < of * 9, "{fired} of {of} pixels fired");
+}
+
+#[test]
+fn correction_across_gaps_is_the_same_in_any_order_and_only_adds() {
+    let mut random = Random::new(9);
+    let (mut added, mut right) = (0, 0);
+    for_all(|renderer, options, shadows, name| {
+        let full = full(renderer, options.width, options.height);
+        let before = without_correction(renderer, &options);
+        for thin_only in [false, true] {
+            let rules = Rules { thin_only, bridges: true };
+            let without = RenderOptions { correction_thin_only: thin_only, ..options.clone() };
+            let found = planes(renderer, &RenderOptions { correction_bridges: true, ..without.clone() });
+            let expected = fixed_point(&before, &full, shadows, rules, &mut |n| n - 1);
+            assert!(found == expected, "{name}: {:?} instead of {:?}", found.fired(), expected.fired());
+            let at_random = fixed_point(&before, &full, shadows, rules, &mut |n| random.below(n));
+            assert!(at_random == expected, "{name}: at random");
+            let without = planes(renderer, &without);
+            assert!(without.fired().iter().all(|at| found.fired().contains(at)), "{name}: fired less across gaps");
+            added += found.fired().len() - without.fired().len();
+            right += without.wrong(&full, shadows).len() - found.wrong(&full, shadows).len();
+        }
+    });
+    println!("{added} pixels fired across gaps and from there, {right} of them wrong before");
+    assert!(added > 100 && right > 30, "{added} pixels, {right} wrong before");
+}
+
+#[test]
+fn dashes_of_odd_rows_are_found_across_the_gaps() {
+    // Half a pixel high: in each row a dash of run / 2 pixels, the next row's begins run / 2 pixels behind it.
+    for run in [6.0, 9.0] {
+        let mut renderer = twin_renderer(dashes(&[(26.3, run)]));
+        let options = adaptive(64, 64, 2, Correction::Object, CorrectionMethod::Converged);
+        let full = full(&mut renderer, 64, 64);
+        let mut wrong = |correction_bridges, correction_thin_only| {
+            let options = RenderOptions { correction_bridges, correction_thin_only, ..options.clone() };
+            planes(&mut renderer, &options).wrong(&full, false).len()
+        };
+        let (without, with) = (wrong(false, false), wrong(true, false));
+        println!("run {run}: {without} wrong pixels, {with} across gaps");
+        // The dashes next to the picture's border have no partner.
+        assert!(without >= 12 && with * 4 <= without, "run {run}: {without} wrong pixels, {with} across gaps");
+        assert_eq!(wrong(true, true), with, "run {run}: with the edges of thick things spared");
+    }
+    // Beyond the reach nothing is found.
+    let mut renderer = twin_renderer(dashes(&[(26.3, 4.0 * BRIDGE_REACH as f32)]));
+    let options = adaptive(64, 64, 2, Correction::Object, CorrectionMethod::Converged);
+    let plain = planes(&mut renderer, &options);
+    assert_eq!(planes(&mut renderer, &RenderOptions { correction_bridges: true, ..options }), plain);
 }
 
 /// A bar over the pixels `lo` to `hi` of 64x64, before a wall. The eye holds the light, so that nothing is in shadow.

@@ -30,6 +30,10 @@ enum Shot {
     RodsSwept,
     /// [`Shot::Rods`], drawn in bands.
     RodsInBands,
+    /// Lines thinner than a pixel, nearly level.
+    Dashes,
+    /// [`Shot::Dashes`], drawn in bands.
+    DashesInBands,
     /// Large enough for scans of two levels.
     Large,
     /// [`Shot::Zoo`] with the strictest tolerances.
@@ -44,6 +48,7 @@ impl Shot {
             Shot::Zoo | Shot::Strictest => "zoo",
             Shot::Room | Shot::Paper => "mirror-room",
             Shot::Rods | Shot::RodsSwept | Shot::RodsInBands | Shot::Large => "rods",
+            Shot::Dashes | Shot::DashesInBands => "dashes",
         }
     }
 
@@ -55,10 +60,11 @@ impl Shot {
             Shot::Strictest => options.tolerances.t_pos = 0.0,
             // Large enough that smooth glass, slopes and faint shadows are interpolated too.
             Shot::Zoo => (options.width, options.height, options.depth) = (180, 136, 3),
+            Shot::Dashes | Shot::DashesInBands => (options.width, options.height) = (64, 64),
             Shot::Room => {}
             Shot::Paper => options = RenderOptions { width: 50, height: 38, ..RenderOptions::paper() },
         }
-        if self == Shot::RodsInBands {
+        if matches!(self, Shot::RodsInBands | Shot::DashesInBands) {
             options.band_rows = Some(8);
         }
         if self == Shot::RodsSwept {
@@ -68,7 +74,7 @@ impl Shot {
     }
 
     fn counters(self) -> bool {
-        matches!(self, Shot::Zoo | Shot::Room)
+        matches!(self, Shot::Zoo | Shot::Room | Shot::Strictest)
     }
 }
 
@@ -116,7 +122,11 @@ const CORRECTION: &[Mutant] = &[
     ("step4.cl", " && from_class != CLASS_CORRECTED", "", Shot::Rods, Kernel::Step4Mark),
     ("common/attributes.clh", "if (a->object != b->object) return true;", "if (a->object == b->object) return true;", Shot::Rods, Kernel::Step4Mark),
     ("common/attributes.clh", "(step->flags & STEP_COMPARE_SHADOW)", "(step->flags & STEP_GCOL_LINEAR)", Shot::Rods, Kernel::Step4Mark),
-    ("step4.cl", "from_class == CLASS_CORRECTED || !surfaces", "from_class == CLASS_TRACED || !surfaces", Shot::Zoo, Kernel::Step4Mark),
+    ("step4.cl", "(step->flags & STEP_THIN_ONLY) || from_class == CLASS_CORRECTED", "(step->flags & STEP_THIN_ONLY) || from_class == CLASS_TRACED", Shot::Zoo, Kernel::Step4Mark),
+    ("step4.cl", "(is_thick && is_surface)", "is_thick", Shot::Zoo, Kernel::Step4Mark),
+    ("step4.cl", "|| runs_along;", ";", Shot::Zoo, Kernel::Step4Mark),
+    ("step4.cl", "!(filled & 2u) &&", "", Shot::Zoo, Kernel::Step4Mark),
+    ("step4.cl", "(filled & 40u) == 40u", "(filled & 40u)", Shot::Zoo, Kernel::Step4Mark),
     ("step4.cl", "(filled & 7u) == 7u", "(filled & 2u)", Shot::Zoo, Kernel::Step4Mark),
     ("step4.cl", "(filled & 40u)", "(filled & 64u)", Shot::Zoo, Kernel::Step4Mark),
     ("step4.cl", "const uint bx = x - back * (nx - x)", "const uint bx = x + back * (nx - x)", Shot::Zoo, Kernel::Step4Mark),
@@ -124,7 +134,7 @@ const CORRECTION: &[Mutant] = &[
     ("step4.cl", "case 0u: return x > 0u ?", "case 0u: return x > 25u ?", Shot::Rods, Kernel::Step4Mark),
     ("step4.cl", "case 1u: return x + 1u < frame->width ?", "case 1u: return x + 25u < frame->width ?", Shot::Rods, Kernel::Step4Mark),
     ("step4.cl", "case 2u: return y > frame->window_begin ?", "case 2u: return y > frame->window_begin + 19u ?", Shot::Rods, Kernel::Step4Mark),
-    ("step4.cl", "default: return y + 1u < frame->window_end ?", "default: return y + 19u < frame->window_end ?", Shot::Rods, Kernel::Step4Mark),
+    ("step4.cl", "case 3u: return y + 1u < frame->window_end ?", "case 3u: return y + 19u < frame->window_end ?", Shot::Rods, Kernel::Step4Mark),
     ("step4.cl", "(step->flags & STEP_SETTLE) ||", "", Shot::RodsInBands, Kernel::Step4Trace),
     ("step4.cl", "y >= frame->interior_end", "y > frame->interior_end", Shot::RodsInBands, Kernel::Step4Tail),
     ("step4.cl", "y < frame->interior_begin", "y + 1u < frame->interior_begin", Shot::RodsInBands, Kernel::Step4Trace),
@@ -134,6 +144,36 @@ const CORRECTION: &[Mutant] = &[
     ("common/trace.clh", "? CLASS_CORRECTED : CLASS_CONFIRMED", "? CLASS_CORRECTED : CLASS_CORRECTED", Shot::Rods, Kernel::Step4Trace),
     ("common/trace.clh", "out_attributes[PLANE_CLAIM * pitch + at] = NO_CLAIM", "out_attributes[PLANE_CLAIM * pitch + at] = 0u", Shot::Rods, Kernel::Step4Trace),
     ("common/trace.clh", "pixel_class == CLASS_BASE ? 0u : out_attributes[PLANE_CLASS * pitch + at] & ~CLASS_MASK", "0u", Shot::Zoo, Kernel::Step2c),
+];
+
+/// Pixels across gaps.
+#[rustfmt::skip]
+const BRIDGES: &[Mutant] = &[
+    ("step4.cl", "if (i % ways(step) == 4u ||", "if (", Shot::Dashes, Kernel::Step4Mark),
+    ("step4.cl", "STEP_BRIDGE ? 5u : 4u", "STEP_BRIDGE ? 6u : 4u", Shot::Dashes, Kernel::Step4Mark),
+    ("step4.cl", "#define PACK_PIXEL(i) target(frame, &step, attributes, color, list, i)", "#define PACK_PIXEL(i) target(frame, &step, attributes, color, list, i ^ 1u)", Shot::Dashes, Kernel::Step4Scatter),
+    ("common/bridge.clh", "if (!(y & 1u) ||", "if ((y & 1u) ||", Shot::Dashes, Kernel::Step4Mark),
+    ("common/bridge.clh", "color, x, y, x, y - 1u) &&", "color, x, y, x, y - 1u) ||", Shot::Rods, Kernel::Step4Mark),
+    ("common/bridge.clh", "above ? y - 1u : y + 1u, across", "above ? y + 1u : y - 1u, across", Shot::Dashes, Kernel::Step4Mark),
+    ("common/bridge.clh", "k <= BRIDGE_REACH", "k <= 1u", Shot::Dashes, Kernel::Step4Mark),
+    ("common/bridge.clh", "right < 2u", "right < 1u", Shot::Dashes, Kernel::Step4Mark),
+    ("common/bridge.clh", "right ? x + k : x - k", "right ? x + k : x - 2u * k", Shot::Dashes, Kernel::Step4Mark),
+    ("common/bridge.clh", "!is_thin(frame, step, attributes, color, px, across))", "false)", Shot::Rods, Kernel::Step4Mark),
+    ("common/bridge.clh", "return interpolated && pixels_differ(frame, step, attributes, color, x, near, qx, y) ?", "return interpolated ?", Shot::Zoo, Kernel::Step4Mark),
+    ("common/bridge.clh", "y < frame->interior_begin ||", "y < frame->interior_begin + 4u ||", Shot::DashesInBands, Kernel::Step4Mark),
+];
+
+/// Lights that need no shadow ray.
+#[rustfmt::skip]
+const KNOWN_SHADOWS: &[Mutant] = &[
+    ("common/known_shadows.clh", "(mask & FAIL_GC) || mask == FAIL_SH", "(mask & FAIL_SH)", Shot::Zoo, Kernel::Step3c),
+    ("common/known_shadows.clh", "!(mask & (FAIL_G1 | FAIL_G2)) &&", "", Shot::Strictest, Kernel::Step3c),
+    ("common/known_shadows.clh", "known.lights = ~(known.bits ^", "known.lights = ~(known.bits &", Shot::Zoo, Kernel::Step3c),
+    ("common/known_shadows.clh", "attributes[PLANE_OBJECT * pitch + a] != object ||", "attributes[PLANE_OBJECT * pitch + a] == object ||", Shot::Zoo, Kernel::Step2c),
+    ("common/known_shadows.clh", "reflectance.w <= LITTLE_OWN_LIGHT", "reflectance.w > LITTLE_OWN_LIGHT", Shot::Zoo, Kernel::Step4Trace),
+    ("common/known_shadows.clh", "known.lights = ~0u;", "known.lights = 0u;", Shot::Zoo, Kernel::Step4Trace),
+    ("common/trace.clh", "shadowed = known->bits >> i & 1u;", "shadowed = true;", Shot::Zoo, Kernel::Step3c),
+    ("common/trace.clh", "shadow_test(SCENE_ARGS, &at, &nothing, work)", "shadow_test(SCENE_ARGS, p, &nothing, work)", Shot::Zoo, Kernel::Step1),
 ];
 
 /// The walk through the tree and the tests of triangles.
@@ -277,7 +317,9 @@ fn every_broken_line_is_caught() {
     }
     // For whoever changes one kernel: only mutants of this file.
     let only = std::env::var("MUTANTS_OF").unwrap_or_default();
-    let all = [ENTRY_POINTS, CORRECTION, TRAVERSAL, RAY_TREE, SHADING, SIMILARITY, PACKING].into_iter().flatten();
+    let all = [ENTRY_POINTS, CORRECTION, BRIDGES, KNOWN_SHADOWS, TRAVERSAL, RAY_TREE, SHADING, SIMILARITY, PACKING]
+        .into_iter()
+        .flatten();
     let mutants: Vec<&Mutant> = all.filter(|mutant| mutant.0.contains(&only)).collect();
     let mut scenes: HashMap<&str, Prepared> = HashMap::new();
     let mut sound: BTreeSet<String> = BTreeSet::new();

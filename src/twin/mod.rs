@@ -7,6 +7,8 @@
 // Twins compare as their kernels do, so that NaN takes the same branch.
 #![allow(clippy::neg_cmp_op_on_partial_ord)]
 
+pub mod bridge;
+pub mod known_shadows;
 pub mod pack;
 pub mod planes;
 pub mod scene_args;

@@ -3,42 +3,30 @@
 
 use rayon::prelude::*;
 
-use super::planes::{Attributes, color_index, hits_differ, load_attributes, plane_index, surfaces_differ};
+use super::bridge::{Hits, bridged_pixel};
+use super::planes::{color_index, hits_differ, load_attributes, plane_index, surfaces_differ};
 use super::trace::trace_pixel;
 use super::{FrameBuffers, SceneArgs, pack};
 use crate::layout::*;
 
-/// Does what pixel `(x, y)` hit fill the three pixels on its far side from `(nx, ny)` and one beside it, too?
-fn is_thick(
-    frame: &FrameParams,
-    step: &StepParams,
-    buffers: &FrameBuffers,
-    a: &Attributes,
-    (x, y): (u32, u32),
-    (nx, ny): (u32, u32),
-) -> bool {
-    let color = |x: u32, y: u32| buffers.color.get(color_index(frame, x, y));
+/// Does what pixel `(x, y)` hit, by the looks of the pixels around, pass `(nx, ny)` by?
+fn passes_by(hits: Hits, is_surface: bool, (x, y): (u32, u32), (nx, ny): (u32, u32)) -> bool {
     // Pixels left of or above the picture wrap around to beyond it, as in the kernel.
     let (dx, dy) = (nx.wrapping_sub(x), ny.wrapping_sub(y));
     let fills = |back: u32, along: u32| {
         let bx = x.wrapping_sub(back.wrapping_mul(dx)).wrapping_add(along.wrapping_mul(dy));
         let by = y.wrapping_sub(back.wrapping_mul(dy)).wrapping_add(along.wrapping_mul(dx));
-        if bx >= frame.width || by >= frame.height {
-            return false;
-        }
-        let b = load_attributes(&buffers.attributes, frame.plane_pitch, plane_index(frame, bx, by));
-        !hits_differ(step, a, &b, color(x, y), color(bx, by))
+        bx < hits.frame.width && by < hits.frame.height && !hits.differ((x, y), (bx, by))
     };
-    [u32::MAX, 0, 1].into_iter().all(|along| fills(1, along)) && [u32::MAX, 1].into_iter().any(|along| fills(0, along))
+    let far = [u32::MAX, 0, 1].map(|along| fills(1, along));
+    let beside = [u32::MAX, 1].map(|along| fills(0, along));
+    let is_thick = far == [true; 3] && beside != [false; 2];
+    let runs_along = !far[1] && beside == [true; 2];
+    (is_thick && is_surface) || runs_along
 }
 
-fn spreads(
-    frame: &FrameParams,
-    step: &StepParams,
-    buffers: &FrameBuffers,
-    (x, y): (u32, u32),
-    (nx, ny): (u32, u32),
-) -> bool {
+fn spreads(hits: Hits, (x, y): (u32, u32), (nx, ny): (u32, u32)) -> bool {
+    let Hits { frame, step, buffers } = hits;
     let planes = &buffers.attributes;
     let pitch = frame.plane_pitch;
     let (at, to) = (plane_index(frame, x, y), plane_index(frame, nx, ny));
@@ -56,21 +44,28 @@ fn spreads(
     }
     step.flags & STEP_THIN_ONLY == 0
         || from_class == CLASS_CORRECTED
-        || !surfaces_differ(step, &a, &b)
-        || !is_thick(frame, step, buffers, &a, (x, y), (nx, ny))
+        || !passes_by(hits, surfaces_differ(step, &a, &b), (x, y), (nx, ny))
 }
 
-fn neighbour(frame: &FrameParams, step: &StepParams, buffers: &FrameBuffers, i: u32) -> u32 {
-    let source = buffers.list.get(step.source_offset + (i >> 2));
+/// How many items a source has.
+fn ways(step: &StepParams) -> u32 {
+    if step.flags & STEP_BRIDGE != 0 { 5 } else { 4 }
+}
+
+/// The pixel that item `i` looks at from its source: left, right, up, down, across a gap.
+fn target(hits: Hits, i: u32) -> u32 {
+    let Hits { frame, step, buffers } = hits;
+    let source = buffers.list.get(step.source_offset + i / ways(step));
     let (x, y) = (source & 0xffff, source >> 16);
     if y + 1 < frame.interior_begin || y > frame.interior_end {
         return NO_PIXEL;
     }
-    let (exists, pixel) = match i & 3 {
+    let (exists, pixel) = match i % ways(step) {
         0 => (x > 0, source.wrapping_sub(1)),
         1 => (x + 1 < frame.width, source.wrapping_add(1)),
         2 => (y > frame.window_begin, source.wrapping_sub(0x10000)),
-        _ => (y + 1 < frame.window_end, source.wrapping_add(0x10000)),
+        3 => (y + 1 < frame.window_end, source.wrapping_add(0x10000)),
+        _ => return bridged_pixel(hits, (x, y)),
     };
     if exists { pixel } else { NO_PIXEL }
 }
@@ -85,32 +80,34 @@ pub fn step4_mark(scene: &SceneArgs, step: &StepParams, i: u32, buffers: &FrameB
         return;
     }
     let frame = scene.frame;
-    let pixel = neighbour(frame, step, buffers, i);
+    let hits = Hits { frame, step, buffers };
+    let pixel = target(hits, i);
     if pixel == NO_PIXEL {
         return;
     }
-    let source = buffers.list.get(step.source_offset + (i >> 2));
+    let source = buffers.list.get(step.source_offset + i / ways(step));
     let coordinates = |pixel: u32| (pixel & 0xffff, pixel >> 16);
-    if spreads(frame, step, buffers, coordinates(source), coordinates(pixel)) {
+    if i % ways(step) == 4 || spreads(hits, coordinates(source), coordinates(pixel)) {
         buffers.attributes.min(PLANE_CLAIM * frame.plane_pitch + pixel_plane_index(frame, pixel), i);
     }
 }
 
 /// Only interpolated pixels have a claim that means anything: `check_pixel` resets it, other pixels hold what was there.
-fn claimed_by(frame: &FrameParams, step: &StepParams, buffers: &FrameBuffers, i: u32) -> bool {
-    let pixel = neighbour(frame, step, buffers, i);
+fn claimed_by(hits: Hits, i: u32) -> bool {
+    let pixel = target(hits, i);
     if pixel == NO_PIXEL {
         return false;
     }
-    let planes = &buffers.attributes;
-    let pitch = frame.plane_pitch;
-    let to = pixel_plane_index(frame, pixel);
+    let planes = &hits.buffers.attributes;
+    let pitch = hits.frame.plane_pitch;
+    let to = pixel_plane_index(hits.frame, pixel);
     planes.get(PLANE_CLAIM * pitch + to) == i && planes.get(PLANE_CLASS * pitch + to) & CLASS_MASK == CLASS_INTERPOLATED
 }
 
 /// One work-item of `step4_count`.
 pub fn step4_count(scene: &SceneArgs, step: &StepParams, chunk: u32, buffers: &FrameBuffers) {
-    pack::count(chunk, step.item_count, &buffers.masks, &buffers.sums, |i| claimed_by(scene.frame, step, buffers, i));
+    let hits = Hits { frame: scene.frame, step, buffers };
+    pack::count(chunk, step.item_count, &buffers.masks, &buffers.sums, |i| claimed_by(hits, i));
 }
 
 /// One work-group of `step4_scan`.
@@ -120,9 +117,8 @@ pub fn step4_scan(step: &StepParams, group: u32, buffers: &FrameBuffers) {
 
 /// One work-item of `step4_scatter`.
 pub fn step4_scatter(scene: &SceneArgs, step: &StepParams, chunk: u32, buffers: &FrameBuffers) {
-    pack::scatter(chunk, step, &buffers.masks, &buffers.sums, &buffers.list, |i| {
-        neighbour(scene.frame, step, buffers, i)
-    });
+    let hits = Hits { frame: scene.frame, step, buffers };
+    pack::scatter(chunk, step, &buffers.masks, &buffers.sums, &buffers.list, |i| target(hits, i));
 }
 
 /// One work-item of `step4_trace`.
@@ -151,8 +147,9 @@ pub fn step4_tail(scene: &SceneArgs, step: &StepParams, buffers: &FrameBuffers) 
     while rounds < TAIL_ROUNDS && round.item_count != 0 && round.item_count <= 4 * TAIL_SOURCES {
         (0..round.item_count).for_each(|i| step4_mark(scene, &round, i, buffers));
         let mut total = 0;
-        for i in (0..round.item_count).filter(|&i| claimed_by(scene.frame, &round, buffers, i)) {
-            buffers.list.set(round.list_offset + total, neighbour(scene.frame, &round, buffers, i));
+        let hits = Hits { frame: scene.frame, step: &round, buffers };
+        for i in (0..round.item_count).filter(|&i| claimed_by(hits, i)) {
+            buffers.list.set(round.list_offset + total, target(hits, i));
             total += 1;
         }
         let trace = StepParams { item_count: total, ..round };
@@ -181,7 +178,7 @@ pub fn step4_sweep(scene: &SceneArgs, step: &StepParams, line: u32, buffers: &Fr
     let back = (1..length).rev().map(|k| (k, k - 1));
     for (from, to) in forth.chain(back) {
         let (tx, ty) = pixel(to);
-        if spreads(frame, step, buffers, pixel(from), (tx, ty)) {
+        if spreads(Hits { frame, step, buffers }, pixel(from), (tx, ty)) {
             trace_pixel(scene, tx, ty, CLASS_CORRECTED, step, buffers);
         }
     }

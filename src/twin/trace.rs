@@ -4,6 +4,7 @@
 use glam::Vec3;
 
 use super::FrameBuffers;
+use super::known_shadows::{KnownShadows, known_shadows};
 use super::planes::{
     Attributes, color_index, hits_differ, load_attributes, pixel_direction, plane_index, store_attributes, store_work,
 };
@@ -70,14 +71,16 @@ pub fn surface_point(scene: &SceneArgs, o: Vec3, d: Vec3, hit: &Hit) -> SurfaceP
     SurfacePoint { position, geometric_normal, normal, s, t, object, material }
 }
 
-/// One bit per light that does not reach the point.
-pub fn shadow_test(scene: &SceneArgs, p: &SurfacePoint, work: &mut Work) -> u32 {
+/// One bit per light that does not reach the point; those that are known get no ray.
+pub fn shadow_test(scene: &SceneArgs, p: &SurfacePoint, known: &KnownShadows, work: &mut Work) -> u32 {
     let o = p.outside(scene);
     let mut bits = 0;
     for (i, light) in scene.lights.iter().enumerate().take(scene.frame.light_count as usize) {
         let to_light = xyz(light.position) - o;
         let mut shadowed = !(dot(p.normal, to_light) > 0.0 && dot(p.geometric_normal, to_light) > 0.0);
-        if !shadowed {
+        if !shadowed && known.lights >> i & 1 != 0 {
+            shadowed = known.bits >> i & 1 != 0;
+        } else if !shadowed {
             work.shadow_rays += 1;
             let distance = dot(to_light, to_light).sqrt();
             shadowed = any_hit(scene, o, to_light * (1.0 / distance), distance, work);
@@ -190,7 +193,7 @@ pub fn gather_secondary(scene: &SceneArgs, p: &SurfacePoint, d: Vec3, work: &mut
                 break;
             }
             at = surface_point(scene, c.origin, c.direction, &hit);
-            let shadow_bits = shadow_test(scene, &at, work);
+            let shadow_bits = shadow_test(scene, &at, &KnownShadows::default(), work);
             work.shaded += 1;
             sum += c.weight * shade_local(scene, &at.shade_point(shadow_bits), -c.direction);
         }
@@ -211,13 +214,14 @@ pub fn trace_pixel(scene: &SceneArgs, x: u32, y: u32, pixel_class: u32, step: &S
     if hit.triangle != NO_TRIANGLE {
         work.shaded += 1;
         let p = surface_point(scene, o, d, &hit);
+        let known = known_shadows(scene, step, &out.attributes, (x, y), pixel_class, (p.object, p.material));
         a = Attributes {
             position: p.position,
             normal: p.normal,
             s: p.s,
             t: p.t,
             object: p.object,
-            shadow_bits: shadow_test(scene, &p, &mut work),
+            shadow_bits: shadow_test(scene, &p, &known, &mut work),
             gcol: gather_secondary(scene, &p, d, &mut work),
         };
         color = shade_local(scene, &p.shade_point(a.shadow_bits), -d) + a.gcol;
