@@ -5,6 +5,7 @@ use crate::error::Result;
 use crate::frame::{Frame, FrameStats, Keep};
 use crate::layout::*;
 use crate::metrics::{self, Quality, Rgb8, WrongPixels};
+use crate::monitor::Monitor;
 use crate::options::{Mode, RenderOptions};
 use crate::renderer::Renderer;
 use crate::wave_model::{StageCost, WaveModel, stage_costs};
@@ -66,33 +67,39 @@ impl Comparison {
 }
 
 /// Draws `frames` frames of each mode in turn and compares them. The fall-back to full tracing is switched off.
-/// `progress` gets the share done.
+/// The renderer's monitor watches.
 ///
 /// # Errors
 /// Whatever drawing reports.
-pub fn compare(
-    renderer: &mut Renderer,
-    options: &RenderOptions,
-    frames: u32,
-    progress: &dyn Fn(f32),
-) -> Result<Comparison> {
+pub fn compare(renderer: &mut Renderer, options: &RenderOptions, frames: u32) -> Result<Comparison> {
+    let monitor = renderer.monitor().clone();
+    monitor.restart();
+    let compared = compare_for(&monitor, renderer, options, frames);
+    renderer.set_monitor(&monitor);
+    compared
+}
+
+fn compare_for(monitor: &Monitor, renderer: &mut Renderer, options: &RenderOptions, frames: u32) -> Result<Comparison> {
     let full_options = RenderOptions { mode: Mode::Full, ..options.clone() };
     let adaptive_options = RenderOptions { mode: Mode::Adaptive, ..options.clone() };
-    let steps = (frames + 3) as f32;
+    // Two counting frames, two for each round, and the metrics, which take about as long as two.
+    let steps = (2 * frames + 4) as f32;
+    let step = |from: u32, to: u32| monitor.part("frames", from as f32 / steps, to as f32 / steps);
 
     // The counting frames come first: they also warm up, and their planes are what pixels are compared by.
     let keep = Keep::planes(&[PLANE_OBJECT, PLANE_SHADOW]).and(Keep::COUNTERS);
+    renderer.set_monitor(&step(0, 1));
     let full = renderer.render_exactly(&full_options, keep)?;
     let full_objects = renderer.plane(PLANE_OBJECT)?;
     let full_shadows = renderer.plane(PLANE_SHADOW)?;
-    progress(1.0 / steps);
+    renderer.set_monitor(&step(1, 2));
     let counted = renderer.render_exactly(&adaptive_options, keep.and(Keep::planes(&[PLANE_CLASS])))?;
     let (width, height) = options.sample_size();
     let wrong_object = metrics::wrong_pixels(&full_objects, &renderer.plane(PLANE_OBJECT)?, width, height)?;
     let wrong_shadow = metrics::wrong_pixels(&full_shadows, &renderer.plane(PLANE_SHADOW)?, width, height)?;
     drop((full_objects, full_shadows));
     let classes = renderer.plane(PLANE_CLASS)?;
-    progress(2.0 / steps);
+    renderer.set_monitor(&step(2, 2));
 
     // Programs without counters are built in frames that cost nothing else.
     for mode in [&full_options, &adaptive_options] {
@@ -102,12 +109,14 @@ pub fn compare(
     let mut rounds = Rounds::default();
     let (mut full_picture, mut adaptive) = (full.pixels, counted.clone());
     for round in 0..frames {
+        renderer.set_monitor(&step(2 * round + 2, 2 * round + 3));
         let full = renderer.render_exactly(&full_options, Keep::default())?;
+        renderer.set_monitor(&step(2 * round + 3, 2 * round + 4));
         adaptive = renderer.render_exactly(&adaptive_options, Keep::default())?;
         rounds.add(full.stats.frame_ms, &adaptive.stats);
         full_picture = full.pixels;
-        progress((3 + round) as f32 / steps);
     }
+    monitor.check()?;
 
     let (width, height) = (options.width, options.height);
     let interpolated = pixels_with_interpolated_samples(&classes, options);
@@ -116,6 +125,8 @@ pub fn compare(
         Rgb8::new(width, height, &adaptive.pixels)?,
         &interpolated,
     )?;
+    monitor.check()?;
+    step(0, 2 * frames + 4).tell(1.0);
     let mut full_stats = full.stats;
     let work_by_class = counted.stats.work_by_class.unwrap_or_default();
     let mut adaptive_stats = counted.stats;

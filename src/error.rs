@@ -82,6 +82,20 @@ pub enum Error {
         /// The error code.
         code: i32,
     },
+    /// A device was lost while it drew, opened again, and lost again.
+    #[error(
+        "{device} was lost twice in one frame: {cause}; lower `slice_ms` in a --profile, choose a smaller --size or \
+         fewer --samples, or draw with --device cpu"
+    )]
+    DeviceLost {
+        /// The device and its driver version.
+        device: String,
+        /// The call that failed the second time, with its code.
+        cause: String,
+    },
+    /// The caller ended the work by its [`crate::monitor::Cancel`] token.
+    #[error("cancelled")]
+    Cancelled,
     /// A kernel did not build.
     #[error("kernel program `{program}` does not build on {device}:\n{log}")]
     KernelBuild {

@@ -10,9 +10,10 @@
 //! use rarefy::renderer::{DeviceChoice, Keep, Renderer, RendererOptions};
 //!
 //! fn main() -> rarefy::Result<()> {
-//!     let scene = rarefy::builtin::to_scene("spheres")?; // files: rarefy::scene::load(path, &|_, _| {})?
+//!     let monitor = rarefy::Monitor::default(); // progress, previews, cancel: see rarefy::monitor
+//!     let scene = rarefy::builtin::to_scene("spheres")?; // files: rarefy::scene::load(path, &monitor)?
 //!     let device = RendererOptions { device: DeviceChoice::Auto, ..RendererOptions::default() };
-//!     let mut renderer = Renderer::new(scene, &device, &|_, _| {})?;
+//!     let mut renderer = Renderer::new(scene, &device, &monitor)?;
 //!     let options = RenderOptions { width: 320, height: 240, ..RenderOptions::default() };
 //!     let frame = renderer.render(&options, Keep::default())?;
 //!     println!("{:?} in {:.0} ms", frame.stats.pixels, frame.stats.frame_ms);
@@ -34,6 +35,7 @@ pub mod layers;
 pub mod layout;
 pub mod math;
 pub mod metrics;
+pub mod monitor;
 pub mod opencl;
 pub mod options;
 pub mod picture;
@@ -51,4 +53,5 @@ pub mod twin;
 pub mod wave_model;
 
 pub use error::{Error, Result};
+pub use monitor::{Cancel, Monitor};
 pub use scene::Scene;

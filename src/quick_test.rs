@@ -155,7 +155,7 @@ fn test(device: &mut OpenClBackend) -> Result<SelfTest> {
 }
 
 pub(crate) fn scene_buffers(scene: &Scene, shading: Shading) -> Result<Arc<SceneBuffers>> {
-    let tree = KdTree::build(&scene.positions, &scene.triangles, &BuildOptions::default(), &|_| ())?;
+    let tree = KdTree::build(&scene.positions, &scene.triangles, &BuildOptions::default(), &crate::Monitor::default())?;
     Ok(Arc::new(SceneBuffers::new(scene, tree, shading)?))
 }
 

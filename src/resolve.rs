@@ -3,6 +3,9 @@
 
 use rayon::prelude::*;
 
+use crate::error::Result;
+use crate::monitor::Monitor;
+
 /// Linear light of an sRGB byte, 0 to 65535.
 fn linear_table() -> [u32; 256] {
     std::array::from_fn(|byte| {
@@ -21,14 +24,18 @@ fn srgb_byte(linear: u32) -> u32 {
 
 /// The picture of `width` by `height` pixels whose samples, `samples` in each direction of a pixel, are `words`
 /// (sRGB words, row-major): each pixel is the mean of its samples in linear light.
-pub fn resolve(words: &[u32], width: u32, height: u32, samples: u32) -> Vec<u32> {
+///
+/// # Errors
+/// [`crate::Error::Cancelled`].
+pub fn resolve(words: &[u32], width: u32, height: u32, samples: u32, monitor: &Monitor) -> Result<Vec<u32>> {
     let linear = linear_table();
     let srgb: Vec<u8> = (0..=65535).map(|v| srgb_byte(v) as u8).collect();
     let (width, samples) = (width as usize, samples as usize);
     let row_words = width * samples;
     let count = (samples * samples) as u32;
     let mut pixels = vec![0; width * height as usize];
-    pixels.par_chunks_mut(width.max(1)).enumerate().for_each(|(y, row)| {
+    pixels.par_chunks_mut(width.max(1)).enumerate().try_for_each(|(y, row)| {
+        monitor.check()?;
         let block_rows = &words[y * samples * row_words..][..samples * row_words];
         for (x, pixel) in row.iter_mut().enumerate() {
             let mut sums = [0u32; 3];
@@ -43,8 +50,9 @@ pub fn resolve(words: &[u32], width: u32, height: u32, samples: u32) -> Vec<u32>
             let [r, g, b] = sums.map(|sum| srgb[((sum + count / 2) / count) as usize]);
             *pixel = u32::from_le_bytes([r, g, b, 255]);
         }
-    });
-    pixels
+        Ok(())
+    })?;
+    Ok(pixels)
 }
 
 #[cfg(test)]
@@ -61,7 +69,7 @@ mod tests {
             let words: Vec<u32> =
                 (0..256u32).flat_map(|byte| std::iter::repeat_n(grey(byte), (samples * samples) as usize)).collect();
             // One column of pixels would interleave its rows: each value fills one row of blocks of its own.
-            let pixels = resolve(&words, 1, 256, samples);
+            let pixels = resolve(&words, 1, 256, samples, &Monitor::default()).unwrap();
             for (byte, pixel) in pixels.iter().enumerate() {
                 assert_eq!(*pixel, grey(byte as u32));
             }
@@ -72,6 +80,6 @@ mod tests {
     fn black_and_white_meet_in_linear_light() {
         let words = [0xff00_0000, 0xffff_ffff, 0xffff_ffff, 0xff00_0000];
         // Half the light is 188 of 255, not 128.
-        assert_eq!(resolve(&words, 1, 1, 2), [0xffbc_bcbc]);
+        assert_eq!(resolve(&words, 1, 1, 2, &Monitor::default()).unwrap(), [0xffbc_bcbc]);
     }
 }

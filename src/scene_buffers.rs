@@ -6,6 +6,7 @@ use glam::Vec3;
 use crate::error::{Error, Result};
 use crate::kdtree::KdTree;
 use crate::layout::{self, *};
+use crate::monitor::Monitor;
 use crate::scene::{Scene, Surface};
 
 /// By which rules surfaces are shaded.
@@ -48,6 +49,9 @@ pub struct SceneBuffers {
     pub epsilon: f32,
 }
 
+/// Triangles that are flattened before it is asked whether the work is to end.
+const TRIANGLES_AT_ONCE: usize = 1 << 16;
+
 fn float4(v: Vec3, w: f32) -> [f32; 4] {
     [v.x, v.y, v.z, w]
 }
@@ -58,6 +62,15 @@ impl SceneBuffers {
     /// # Errors
     /// [`Error::LimitExceeded`] if the texels do not fit 32-bit offsets.
     pub fn new(scene: &Scene, tree: KdTree, shading: Shading) -> Result<Self> {
+        SceneBuffers::watched(scene, tree, shading, &Monitor::default())
+    }
+
+    /// As [`SceneBuffers::new`]; `monitor` can end it.
+    ///
+    /// # Errors
+    /// As for [`SceneBuffers::new`]; [`Error::Cancelled`].
+    pub fn watched(scene: &Scene, tree: KdTree, shading: Shading, monitor: &Monitor) -> Result<Self> {
+        monitor.check()?;
         let anchor = shading == Shading::Anchor;
         let (textures, texels) = flatten_textures(scene)?;
         let mut lights: Vec<_> = scene
@@ -75,6 +88,9 @@ impl SceneBuffers {
         let mut triangles = Vec::with_capacity(scene.triangles.len());
         let mut triangle_shading = Vec::with_capacity(scene.triangles.len());
         for (id, corners) in scene.triangles.iter().enumerate() {
+            if id % TRIANGLES_AT_ONCE == 0 {
+                monitor.check()?;
+            }
             let [a, b, c] = corners.map(|i| scene.positions[i as usize]);
             let object = scene.triangle_objects[id];
             let material = scene.objects[object as usize].material;

@@ -13,6 +13,7 @@ use crate::backend::{Backend, FrameBuffer};
 use crate::builtin;
 use crate::error::Result;
 use crate::kernels::Mutation;
+use crate::monitor::Monitor;
 use crate::options::{CorrectionMethod, RenderOptions};
 use crate::quick_test::{check_layout, check_parity, run_frame, scene_buffers};
 use crate::renderer::{DeviceChoice, RendererOptions};
@@ -63,7 +64,10 @@ pub fn run(options: &RendererOptions) -> Result<SelfTest> {
     let twin_check = check_twin(&scene, &buffers)?;
     let opened = match options.device {
         DeviceChoice::Cpu => None,
-        _ => crate::renderer::open_opencl(&buffers, &RendererOptions { strict: true, ..options.clone() })?,
+        _ => {
+            let options = RendererOptions { strict: true, ..options.clone() };
+            crate::renderer::open_opencl(&buffers, &options, &Monitor::default())?
+        }
     };
     let Some(mut device) = opened else {
         let info = TwinBackend::new(buffers).info();

@@ -119,7 +119,8 @@ fn measure(anchor: &Path, scene: &Path, name: &str, rounds: usize) -> BenchResul
         shading: Shading::Anchor,
         ..RendererOptions::default()
     };
-    let mut renderer = Renderer::new(rarefy::scene::load(scene, &|_, _| {})?, &options, &|_, _| {})?;
+    let mut renderer =
+        Renderer::new(rarefy::scene::load(scene, &rarefy::Monitor::default())?, &options, &rarefy::Monitor::default())?;
     let frame = RenderOptions { width: SIZE, height: SIZE, mode: Mode::Full, ..RenderOptions::default() };
     let counted = renderer.render_exactly(&frame, Keep::COUNTERS)?;
     let rays = counted.stats.rays.ok_or("a counted frame without ray counts")?;

@@ -101,7 +101,7 @@ fn measure(name: &str, positions: &[Vec3], triangles: &[[u32; 3]], runs: usize) 
         empty_bonus: variable("EMPTY_BONUS", BuildOptions::default().empty_bonus),
         ..BuildOptions::default()
     };
-    let build = |threads| match KdTree::build(positions, triangles, &options(threads), &|_| {}) {
+    let build = |threads| match KdTree::build(positions, triangles, &options(threads), &rarefy::Monitor::default()) {
         Ok(tree) => tree,
         Err(e) => panic!("{name}: {e}"),
     };

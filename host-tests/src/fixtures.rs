@@ -194,7 +194,9 @@ pub struct Look {
 impl Stand {
     /// Makes `scene` ready, with a frame of `width` by `height` and chains of at most `depth` secondary rays.
     pub fn new(scene: &Scene, width: u32, height: u32, depth: u32) -> Self {
-        let tree = KdTree::build(&scene.positions, &scene.triangles, &BuildOptions::default(), &|_| {}).unwrap();
+        let tree =
+            KdTree::build(&scene.positions, &scene.triangles, &BuildOptions::default(), &rarefy::Monitor::default())
+                .unwrap();
         tree.assert_well_formed(&scene.positions, &scene.triangles);
         let buffers = SceneBuffers::new(scene, tree, Shading::Full).unwrap();
         let frame = frame_params(&scene.view, &buffers, width, height, 1, depth);
@@ -252,7 +254,7 @@ pub fn dashes(lines: &[(f32, f32)]) -> Scene {
 /// A renderer on the CPU twin.
 pub fn twin_renderer(scene: Scene) -> Renderer {
     let options = RendererOptions { device: DeviceChoice::Cpu, ..RendererOptions::default() };
-    Renderer::new(scene, &options, &|_, _| {}).unwrap()
+    Renderer::new(scene, &options, &rarefy::Monitor::default()).unwrap()
 }
 
 /// The given mode and size with the paper's tolerances at all levels and without correction.

@@ -43,7 +43,9 @@ pub struct Prepared {
 impl Prepared {
     /// `scene`, by the rules of `shading`.
     pub fn new(scene: Scene, shading: Shading) -> Self {
-        let tree = KdTree::build(&scene.positions, &scene.triangles, &BuildOptions::default(), &|_| ()).unwrap();
+        let tree =
+            KdTree::build(&scene.positions, &scene.triangles, &BuildOptions::default(), &rarefy::Monitor::default())
+                .unwrap();
         let buffers = Arc::new(SceneBuffers::new(&scene, tree, shading).unwrap());
         Prepared { scene, buffers }
     }

@@ -15,7 +15,12 @@ use rarefy_host_tests::frames::no_opencl;
 use rarefy_host_tests::masks::*;
 
 fn renderer(scene: Scene, device: DeviceChoice) -> Renderer {
-    Renderer::new(scene, &RendererOptions { device, strict: true, ..RendererOptions::default() }, &|_, _| {}).unwrap()
+    Renderer::new(
+        scene,
+        &RendererOptions { device, strict: true, ..RendererOptions::default() },
+        &rarefy::Monitor::default(),
+    )
+    .unwrap()
 }
 
 fn devices() -> Vec<DeviceChoice> {
@@ -109,7 +114,7 @@ fn a_budget_cuts_the_frame_and_is_kept() {
     let draw_within = |bytes: Option<u64>| {
         let renderer_options =
             RendererOptions { device: DeviceChoice::Cpu, memory_budget_bytes: bytes, ..RendererOptions::default() };
-        let mut renderer = Renderer::new(scene(), &renderer_options, &|_, _| {}).unwrap();
+        let mut renderer = Renderer::new(scene(), &renderer_options, &rarefy::Monitor::default()).unwrap();
         let frame = renderer.render_exactly(&options, Keep::default());
         (frame.map(|frame| frame.pixels), renderer.peak_device_bytes())
     };
@@ -153,6 +158,27 @@ fn any_size_from_one_pixel_on() {
 }
 
 #[test]
+fn extreme_sizes_are_the_same_on_both_back_ends_and_in_bands() {
+    let mut renderers: Vec<Renderer> =
+        devices().into_iter().map(|device| renderer(builtin::to_scene("spheres").unwrap(), device)).collect();
+    for (width, height) in [(1, 1), (2, 1), (3, 5), (5, 3), (1, 4096), (4096, 1), (7, 1023)] {
+        for (samples, block, mode) in
+            [(1, 2, Mode::Adaptive), (1, 4, Mode::Adaptive), (2, 2, Mode::Adaptive), (1, 2, Mode::Full)]
+        {
+            let options = RenderOptions { width, height, samples, block, mode, ..RenderOptions::default() };
+            let mut drawn = Vec::new();
+            for renderer in &mut renderers {
+                let (whole, classes) = draw(renderer, &options);
+                assert_eq!(whole.pixels.len(), (width * height) as usize);
+                assert_same_in_bands(renderer, &options, &[height.div_ceil(3) * samples]);
+                drawn.push((whole.pixels, classes));
+            }
+            assert!(drawn.iter().all(|frame| frame == &drawn[0]), "{width}x{height}, blocks of {block}, {mode:?}");
+        }
+    }
+}
+
+#[test]
 #[ignore = "long: real scenes in bands of five heights"]
 fn real_scenes_are_the_same_in_bands() {
     let folder = rarefy_host_tests::command::root().join("../shared/scenes");
@@ -162,7 +188,7 @@ fn real_scenes_are_the_same_in_bands() {
             continue;
         }
         for device in devices() {
-            let scene = rarefy::scene::load(&folder.join(name), &|_, _| ()).unwrap();
+            let scene = rarefy::scene::load(&folder.join(name), &rarefy::Monitor::default()).unwrap();
             let mut renderer = renderer(scene, device);
             let options = RenderOptions { width: 400, height: 301, ..RenderOptions::default() };
             assert_same_in_bands(&mut renderer, &options, &[2, 10, 32, 76, 200]);

@@ -227,7 +227,7 @@ fn files_and_memory_give_the_same_scene() {
     for name in builtin::NAMES {
         let path = folder.path().join("made").join(name);
         builtin::write(name, &path).unwrap();
-        let mut loaded = rarefy::scene::load(&path, &|_, _| ()).unwrap();
+        let mut loaded = rarefy::scene::load(&path, &rarefy::Monitor::default()).unwrap();
         let made = builtin::to_scene(name).unwrap();
         assert_eq!(difference(&loaded, &made), None, "{name}");
         assert_eq!(loaded.warnings, Vec::<String>::new());

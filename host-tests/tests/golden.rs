@@ -40,7 +40,8 @@ fn layers_are_what_they_were() {
     let mut failures = Vec::new();
     for name in SCENES {
         let options = RendererOptions { device: DeviceChoice::Cpu, ..RendererOptions::default() };
-        let mut renderer = Renderer::new(builtin::to_scene(name).unwrap(), &options, &|_, _| ()).unwrap();
+        let mut renderer =
+            Renderer::new(builtin::to_scene(name).unwrap(), &options, &rarefy::Monitor::default()).unwrap();
         let options = RenderOptions { width: WIDTH, height: HEIGHT, mode: Mode::Adaptive, ..RenderOptions::default() };
         let frame = renderer.render_exactly(&options, Keep::EVERYTHING).unwrap();
         for layer in LAYERS {

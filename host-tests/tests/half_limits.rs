@@ -39,7 +39,7 @@ fn render(profile: Option<Profile>, memory_budget_bytes: Option<u64>) -> rarefy:
     let device = DeviceChoice::OpenCl(None);
     let cache = CacheFolder::Off;
     let options = RendererOptions { device, profile, cache, memory_budget_bytes, ..RendererOptions::default() };
-    let mut renderer = Renderer::new(builtin::to_scene(SCENE).unwrap(), &options, &|_, _| ())?;
+    let mut renderer = Renderer::new(builtin::to_scene(SCENE).unwrap(), &options, &rarefy::Monitor::default())?;
     Ok(renderer.render(&frame(), Keep::default())?.pixels)
 }
 

@@ -29,7 +29,7 @@ fn renderer(device: DeviceChoice, mutation: Option<Mutation>) -> Renderer {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("oclgrind");
     let cache = CacheFolder::At(folder);
     let options = RendererOptions { device, strict: true, mutation, cache, ..RendererOptions::default() };
-    Renderer::new(builtin::to_scene("rods").unwrap(), &options, &|_, _| {}).unwrap()
+    Renderer::new(builtin::to_scene("rods").unwrap(), &options, &rarefy::Monitor::default()).unwrap()
 }
 
 #[test]
@@ -78,7 +78,7 @@ fn a_racing_kernel_is_found() {
     };
     let options_frame = RenderOptions { width: 64, height: 48, ..RenderOptions::default() };
     // The quick self-test may refuse the device before; by then the race has happened.
-    if let Ok(mut renderer) = Renderer::new(builtin::to_scene("rods").unwrap(), &options, &|_, _| {}) {
+    if let Ok(mut renderer) = Renderer::new(builtin::to_scene("rods").unwrap(), &options, &rarefy::Monitor::default()) {
         let _ = renderer.render_exactly(&options_frame, Keep::default());
     }
     let found = findings(&log);

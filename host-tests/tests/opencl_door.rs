@@ -5,7 +5,8 @@
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use rarefy::Error;
-use rarefy::opencl::{Arg, Launch, OpenOptions, Profile, ProgramSource, build_log, open_with};
+use rarefy::monitor::{Cancel, Event, Monitor};
+use rarefy::opencl::{Arg, Faults, Launch, OpenOptions, Profile, ProgramSource, build_log, open_with};
 use rarefy_host_tests::doors::{SOURCE, count, counted, door, door_with, kernel, launch_sum, options};
 use rarefy_host_tests::frames::no_opencl;
 
@@ -180,11 +181,67 @@ fn a_failing_enqueue_is_an_error_with_the_stage() {
     if no_opencl() {
         return;
     }
-    let door = door_with(&OpenOptions { fail_enqueue: Some(1), ..options() });
+    let faults = Faults::default();
+    faults.after(1, -5);
+    let door = door_with(&OpenOptions { faults: faults.clone(), ..options() });
     assert!(counted(&count(&door, 8, 8, None)));
     let message = launch_sum(&door, 64).unwrap_err().to_string();
     assert_eq!(message, "clEnqueueNDRangeKernel of `sum` failed: CL_OUT_OF_RESOURCES (-5)");
-    assert_eq!(launch_sum(&door, 64).unwrap(), 499_500, "the door still works");
+    // The device is lost for good; one that is opened anew works.
+    let message = launch_sum(&door, 64).unwrap_err().to_string();
+    assert_eq!(message, "clEnqueueWriteBuffer failed: CL_INVALID_COMMAND_QUEUE (-36)");
+    assert!(door.finish().is_err());
+    assert_eq!(launch_sum(&door_with(&OpenOptions { faults, ..options() }), 64).unwrap(), 499_500);
+}
+
+#[test]
+fn slices_follow_what_is_measured_on_every_device() {
+    if no_opencl() {
+        return;
+    }
+    let door = door();
+    if door.info().is_simulator() {
+        println!("skipped: a simulator's times say nothing");
+        return;
+    }
+    assert!(door.slice_ms().is_some_and(|ms| (5.0..=30.0).contains(&ms)), "{:?}", door.slice_ms());
+    // The first slice of a stage is small and measured, so a launch beyond it is cut at least once.
+    assert!(counted(&count(&door, 1024, 1024, Some([8, 8]))));
+    assert!(door.enqueues() > 1);
+}
+
+#[test]
+fn a_launch_is_cancelled_between_two_slices() {
+    if no_opencl() {
+        return;
+    }
+    let door = door_with(&OpenOptions { slice_items: Some(64), ..options() });
+    let cancel = Cancel::default();
+    let token = cancel.clone();
+    // Told after each slice: cancels at about a quarter of the launch.
+    let monitor = Monitor::new(move |event| {
+        if matches!(event, Event::Progress { share, .. } if share >= 0.25) {
+            token.cancel();
+        }
+    });
+    let kernel = kernel(&door, "count");
+    let out = door.buffer::<u32>("out", 64 * 64).unwrap();
+    door.fill_zero(&out).unwrap();
+    door.watch(&monitor.with_cancel(&cancel));
+    let side = 64u32.to_ne_bytes();
+    let args = [Arg::Buffer(&out), Arg::Value(&side), Arg::Value(&side)];
+    let launch =
+        Launch { label: "count", kernel: &kernel, args: &args, global: [64, 64], local: Some([8, 8]), barrier: false };
+    assert!(matches!(door.launch(&launch), Err(Error::Cancelled)));
+    assert!((16..=18).contains(&door.enqueues()), "{} of 64 slices", door.enqueues());
+    for result in [door.read(&out, 0..1).map(|_| ()), door.write(&out, 0, &[1])] {
+        assert!(matches!(result, Err(Error::Cancelled)));
+    }
+    // Whoever watches next is asked.
+    door.watch(&Monitor::default());
+    let done = door.read(&out, 0..64 * 64).unwrap().iter().filter(|&&word| word != 0).count() as u64;
+    assert_eq!(done, 64 * door.enqueues(), "what was enqueued has run");
+    assert!(counted(&count(&door, 64, 64, Some([8, 8]))));
 }
 
 #[test]

@@ -4,8 +4,9 @@
 //! Oclgrind runs these with `--test-threads 1` only: it mixes up contexts of several threads.
 #![allow(clippy::unwrap_used, missing_docs)]
 
-use rarefy::Error;
 use rarefy::opencl::{Arg, CacheFolder, Launch, OpenOptions, Profile, ProgramSource, discover};
+use rarefy::renderer::{DeviceChoice, Renderer, RendererOptions};
+use rarefy::{Error, Monitor, builtin};
 use rarefy_host_tests::doors::{
     SOURCE, count, counted, door, door_under, door_with, kernel, launch_sum, options, profile,
 };
@@ -144,7 +145,8 @@ fn an_enqueue_beyond_the_watchdog_is_an_error() {
     let entry = r#"{"value":1,"certainty":"inferred","source":"test"}"#;
     let text = format!(r#"{{"limits":{{}},"hardware":{{"gpu_batch_timeout_ms":{entry}}}}}"#);
     let strict = Profile::from_json("strict", &text).unwrap();
-    let door = door_with(&OpenOptions { profile: Some(strict), ..options() });
+    // Whole launches: slices would follow what is measured.
+    let door = door_with(&OpenOptions { profile: Some(strict), slice_items: Some(u64::MAX), ..options() });
     let source = "kernel void slow(global uint *out) {
         uint v = (uint)get_global_id(0);
         for (uint i = 0; i < 2000u; i++) v = v * 1664525u + (v >> 7) + 1013904223u;
@@ -226,4 +228,29 @@ fn a_dump_of_the_devices_is_a_profile() {
     let door = door_with(&OpenOptions { profile: Some(own), ..options() });
     assert!(counted(&count(&door, 123, 45, Some([8, 8]))));
     assert_eq!(launch_sum(&door, 64).unwrap(), 499_500);
+}
+
+#[test]
+fn a_scene_beyond_one_allocation_is_refused_with_the_numbers() {
+    if no_opencl() {
+        return;
+    }
+    let make = |most_bytes: &str| {
+        let options = RendererOptions {
+            device: DeviceChoice::OpenCl(None),
+            profile: Some(profile(&[("cl_device_max_mem_alloc_size", most_bytes)])),
+            ..RendererOptions::default()
+        };
+        Renderer::new(builtin::to_scene("cafe").unwrap(), &options, &Monitor::default())
+    };
+    let error = make("1000000").err().unwrap();
+    assert!(matches!(error, Error::LimitExceeded { .. }), "{error}");
+    let message = error.to_string();
+    // The largest array of this scene is beyond the limit; others are not.
+    let named = ["buffer `nodes`", "buffer `triangles`", "buffer `leaf_triangles`", "buffer `triangle_shading`"];
+    assert!(named.iter().any(|name| message.contains(name)), "{message}");
+    for part in ["CL_DEVICE_MAX_MEM_ALLOC_SIZE", "allows 1000000 bytes", "tight"] {
+        assert!(message.contains(part), "{message}");
+    }
+    make("100000000").unwrap();
 }

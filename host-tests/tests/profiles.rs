@@ -16,7 +16,7 @@ const HEIGHT: u32 = 93;
 fn renderer(profile: Option<&Profile>) -> Renderer {
     let device = DeviceChoice::OpenCl(None);
     let options = RendererOptions { device, profile: profile.cloned(), ..RendererOptions::default() };
-    Renderer::new(builtin::to_scene("spheres").unwrap(), &options, &|_, _| ()).unwrap()
+    Renderer::new(builtin::to_scene("spheres").unwrap(), &options, &rarefy::Monitor::default()).unwrap()
 }
 
 /// Each feature with a name.

@@ -20,7 +20,7 @@ fn options(device: DeviceChoice, cache: &Path, mutation: Option<Mutation>) -> Re
 }
 
 fn renderer(options: &RendererOptions) -> rarefy::Result<Renderer> {
-    Renderer::new(builtin::to_scene("spheres").unwrap(), options, &|_, _| ())
+    Renderer::new(builtin::to_scene("spheres").unwrap(), options, &rarefy::Monitor::default())
 }
 
 fn verdicts(cache: &Path) -> Vec<PathBuf> {
@@ -73,7 +73,8 @@ fn a_renderer_leaves_a_verdict_and_draws_its_own_scene() {
     let scene = || builtin::to_scene("cafe").unwrap();
     let mut pictures = Vec::new();
     for _ in 0..2 {
-        let mut renderer = Renderer::new(scene(), &options(OPENCL, folder.path(), None), &|_, _| ()).unwrap();
+        let mut renderer =
+            Renderer::new(scene(), &options(OPENCL, folder.path(), None), &rarefy::Monitor::default()).unwrap();
         assert!(renderer.notices().is_empty());
         pictures.push((renderer.render(&frame, Keep::default()).unwrap().pixels, renderer.peak_device_bytes()));
     }

@@ -24,7 +24,7 @@ fn folder(files: &[(&str, &[u8])]) -> TempDir {
 }
 
 fn load(files: &[(&str, &[u8])]) -> rarefy::Result<Scene> {
-    scene::load(folder(files).path(), &|_, _| {})
+    scene::load(folder(files).path(), &rarefy::Monitor::default())
 }
 
 /// Loads `scene.obj` beside a good view.
@@ -73,7 +73,7 @@ fn the_plain_triangle_loads_without_a_warning() {
 
 #[test]
 fn files_that_are_not_there() {
-    refused(scene::load(Path::new("no/such/place"), &|_, _| {}), &["no/such/place", "scene.obj"]);
+    refused(scene::load(Path::new("no/such/place"), &rarefy::Monitor::default()), &["no/such/place", "scene.obj"]);
     refused(load(&[("view.json", b"{}")]), &["scene.obj", "not found"]);
 }
 
@@ -496,7 +496,7 @@ fn without_a_view_camera_and_light_are_fitted() {
     }
     obj += "f 1 2 3\n";
     let dir = folder(&[("cube.obj", obj.as_bytes())]);
-    let scene = scene::load(&dir.path().join("cube.obj"), &|_, _| {}).unwrap();
+    let scene = scene::load(&dir.path().join("cube.obj"), &rarefy::Monitor::default()).unwrap();
     assert_eq!(scene.name, "cube");
     assert!((scene.view.extent - 1.0).abs() < 0.05, "extent {}", scene.view.extent);
     for what in ["`extent`", "`camera`", "`lights`"] {

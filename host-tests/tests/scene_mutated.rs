@@ -12,7 +12,7 @@ fn load(files: &[(&str, &[u8])]) -> rarefy::Result<Scene> {
     for (name, bytes) in files {
         fs::write(dir.path().join(name), bytes).unwrap();
     }
-    scene::load(dir.path(), &|_, _| {})
+    scene::load(dir.path(), &rarefy::Monitor::default())
 }
 
 /// Two by one texels.

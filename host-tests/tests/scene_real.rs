@@ -18,7 +18,7 @@ fn real_scenes() -> Option<PathBuf> {
 }
 
 fn load(folder: &Path, name: &str) -> Scene {
-    scene::load(&folder.join(name), &|_, _| {}).unwrap()
+    scene::load(&folder.join(name), &rarefy::Monitor::default()).unwrap()
 }
 
 fn material<'a>(scene: &'a Scene, name: &str) -> &'a scene::Material {

@@ -5,6 +5,7 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
+use rarefy::Monitor;
 use rarefy::Scene;
 use rarefy::backend::parity::{KernelParity, ParityBackend};
 use rarefy::backend::twin::TwinBackend;
@@ -267,7 +268,7 @@ fn real_scenes_are_drawn_alike() {
     let mut scenes: Vec<_> = folder.read_dir().unwrap().map(|e| e.unwrap().path()).filter(|p| p.is_dir()).collect();
     scenes.sort();
     for path in scenes {
-        let load = |path: &Path| rarefy::scene::load(path, &|_, _| ()).unwrap();
+        let load = |path: &Path| rarefy::scene::load(path, &Monitor::default()).unwrap();
         let prepared = Prepared::new(load(&path), Shading::Full);
         let mut device = prepared.device(true, &OpenOptions::default());
         for options in [full(&sized(512, 512)), sized(512, 512), RenderOptions { block: 4, ..sized(512, 512) }] {
@@ -338,6 +339,12 @@ impl Backend for Tampered {
     }
     fn take_timings(&mut self) -> rarefy::Result<Vec<(Kernel, f64)>> {
         self.inner.take_timings()
+    }
+    fn watch(&mut self, monitor: &Monitor) {
+        self.inner.watch(monitor);
+    }
+    fn monitor(&self) -> &Monitor {
+        self.inner.monitor()
     }
     fn peak_bytes(&self) -> u64 {
         self.inner.peak_bytes()

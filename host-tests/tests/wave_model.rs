@@ -12,7 +12,7 @@ use rarefy_host_tests::frames::no_opencl;
 
 fn renderer(device: DeviceChoice, profile: Option<Profile>) -> Renderer {
     let options = RendererOptions { device, profile, strict: true, ..RendererOptions::default() };
-    Renderer::new(builtin::to_scene("spheres").unwrap(), &options, &|_, _| {}).unwrap()
+    Renderer::new(builtin::to_scene("spheres").unwrap(), &options, &rarefy::Monitor::default()).unwrap()
 }
 
 fn options() -> RenderOptions {
@@ -50,7 +50,8 @@ fn both_back_ends_and_profiles_agree() {
 fn a_frame_in_bands_has_no_model() {
     let limited =
         RendererOptions { device: DeviceChoice::Cpu, memory_budget_bytes: Some(2 << 20), ..RendererOptions::default() };
-    let mut renderer = Renderer::new(builtin::to_scene("spheres").unwrap(), &limited, &|_, _| {}).unwrap();
+    let mut renderer =
+        Renderer::new(builtin::to_scene("spheres").unwrap(), &limited, &rarefy::Monitor::default()).unwrap();
     let large = RenderOptions { width: 500, height: 400, ..RenderOptions::default() };
     let error = wave_model(&mut renderer, &large).unwrap_err().to_string();
     assert!(error.contains("wave model") && error.contains("--memory-budget"), "{error}");

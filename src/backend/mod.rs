@@ -5,9 +5,11 @@ pub mod opencl;
 pub mod parity;
 pub mod recording;
 pub mod twin;
+pub mod watched;
 
 use crate::error::Result;
 use crate::layout::{COUNTER_COUNT, FrameParams, PLANE_COUNT, StepParams, TAIL_ROUNDS, TAIL_SUM_ENDS};
+use crate::monitor::Monitor;
 use crate::stage::Kernel;
 
 /// What the statistics say about the device of a frame.
@@ -142,6 +144,13 @@ pub trait Backend {
     /// # Errors
     /// A failing call.
     fn take_timings(&mut self) -> Result<Vec<(Kernel, f64)>>;
+
+    /// From here on `monitor` watches: launches tell it how far they are, launches and transfers end with
+    /// [`crate::Error::Cancelled`] once it says so. The default monitor watches nothing.
+    fn watch(&mut self, monitor: &Monitor);
+
+    /// Who watches: long loops on the host between launches ask it, too.
+    fn monitor(&self) -> &Monitor;
 
     /// Most bytes of device memory in use so far.
     fn peak_bytes(&self) -> u64;

@@ -8,6 +8,7 @@ use super::{Backend, BackendInfo, BufferSizes, FrameBuffer, MemoryLimits};
 use crate::error::Result;
 use crate::kernels::{self, Mutation};
 use crate::layout::{self, BuildFlavour, FrameParams, StepParams};
+use crate::monitor::Monitor;
 use crate::opencl::{AnyBuffer, Arg, Buffer, Door, Kernel as DeviceKernel, Launch, Limits, ProgramSource};
 use crate::profiles::Choices;
 use crate::scene_buffers::{SceneBuffers, Shading};
@@ -21,13 +22,18 @@ const LIST_GROUP: usize = 64;
 /// Runs kernels on an OpenCL device.
 pub struct OpenClBackend {
     door: Door,
-    scene: SceneOnDevice,
+    host_scene: Arc<SceneBuffers>,
+    /// `None`: the device is lost.
+    scene: Option<SceneOnDevice>,
     buffers: Option<(BufferSizes, FrameOnDevice)>,
     kernels: HashMap<(Kernel, BuildFlavour), DeviceKernel>,
     flavour: BuildFlavour,
     mutation: Option<Mutation>,
     scan_group: u32,
     program_ms: f64,
+    /// On doors before this one.
+    peak_before: u64,
+    monitor: Monitor,
 }
 
 struct SceneOnDevice {
@@ -90,17 +96,29 @@ impl OpenClBackend {
     /// # Errors
     /// A limit of the device or its profile, or a failing call.
     pub fn new(door: Door, scene: &Arc<SceneBuffers>, strict: bool) -> Result<Self> {
+        OpenClBackend::watched(door, scene, strict, &Monitor::default())
+    }
+
+    /// As [`OpenClBackend::new`]; `monitor` watches until [`Backend::watch`] is called.
+    ///
+    /// # Errors
+    /// As for [`OpenClBackend::new`]; [`crate::Error::Cancelled`].
+    pub fn watched(door: Door, scene: &Arc<SceneBuffers>, strict: bool, monitor: &Monitor) -> Result<Self> {
+        door.watch(monitor);
         let on_device = SceneOnDevice::upload(&door, scene)?;
         let scan_group = scan_group(door.limits());
         Ok(OpenClBackend {
             door,
-            scene: on_device,
+            host_scene: Arc::clone(scene),
+            scene: Some(on_device),
             buffers: None,
             kernels: HashMap::new(),
             flavour: BuildFlavour { strict, count: false, anchor: scene.shading == Shading::Anchor },
             mutation: None,
             scan_group,
             program_ms: 0.0,
+            peak_before: 0,
+            monitor: monitor.clone(),
         })
     }
 
@@ -118,13 +136,38 @@ impl OpenClBackend {
         work: impl FnOnce(&mut Self) -> Result<T>,
     ) -> Result<T> {
         let uploaded = SceneOnDevice::upload(&self.door, scene)?;
-        let own = std::mem::replace(&mut self.scene, uploaded);
+        let own = self.scene.replace(uploaded);
         let done = work(self);
         self.scene = own;
         self.buffers = None;
         let fresh = self.door.start_afresh();
         let done = done?;
         fresh.map(|()| done)
+    }
+
+    /// Whether the device was lost, so that it must be opened again before a frame.
+    pub fn is_lost(&self) -> bool {
+        self.scene.is_none()
+    }
+
+    /// Gives up everything on a device that was lost.
+    pub fn give_up(&mut self) {
+        self.buffers = None;
+        self.kernels.clear();
+        self.scene = None;
+    }
+
+    /// Opens the device again after it was lost: a new context with scene and programs, and slices of half the time.
+    ///
+    /// # Errors
+    /// A device that cannot be opened any more, or a failing upload; the device is lost still.
+    pub fn reopen(&mut self) -> Result<()> {
+        self.give_up();
+        self.peak_before = self.peak_bytes();
+        self.door = self.door.reopen()?;
+        self.door.watch(&self.monitor);
+        self.scene = Some(SceneOnDevice::upload(&self.door, &self.host_scene)?);
+        Ok(())
     }
 
     /// The options and texts that the device's compiler gets, in one: what a verdict about the kernels depends on.
@@ -176,6 +219,7 @@ impl OpenClBackend {
         if self.kernels.contains_key(&(kernel, self.flavour)) {
             return Ok(());
         }
+        self.monitor.check()?;
         let started = std::time::Instant::now();
         let stage = kernel.stage();
         let mut options = layout::build_options(self.flavour);
@@ -250,14 +294,16 @@ impl Backend for OpenClBackend {
             self.buffers = Some((*sizes, on_device));
         }
         self.flavour.count = sizes.counters > 0;
-        self.door.write(&self.scene.frame, 0, std::slice::from_ref(frame))
+        match &self.scene {
+            Some(scene) => self.door.write(&scene.frame, 0, std::slice::from_ref(frame)),
+            None => Ok(()),
+        }
     }
 
     fn run(&mut self, kernel: Kernel, step: &StepParams) -> Result<()> {
         self.build(kernel)?;
-        let Some((_, buffers)) = &self.buffers else { return Ok(()) };
+        let (Some(scene), Some((_, buffers))) = (&self.scene, &self.buffers) else { return Ok(()) };
         let device_kernel = &self.kernels[&(kernel, self.flavour)];
-        let scene = &self.scene;
         let mut args: Vec<Arg> = Vec::with_capacity(20);
         for binding in kernel.bindings() {
             match binding {
@@ -342,7 +388,16 @@ impl Backend for OpenClBackend {
         Ok(timings.into_iter().filter_map(|(label, ms)| Some((kernel(label)?, ms))).collect())
     }
 
+    fn watch(&mut self, monitor: &Monitor) {
+        self.door.watch(monitor);
+        self.monitor = monitor.clone();
+    }
+
+    fn monitor(&self) -> &Monitor {
+        &self.monitor
+    }
+
     fn peak_bytes(&self) -> u64 {
-        self.door.memory().peak_bytes
+        self.door.memory().peak_bytes.max(self.peak_before)
     }
 }

@@ -6,6 +6,7 @@ use super::twin::TwinBackend;
 use super::{Backend, BackendInfo, BufferSizes, FrameBuffer, MemoryLimits};
 use crate::error::Result;
 use crate::layout::{FrameParams, PLANE_GCOL_B, StepParams};
+use crate::monitor::Monitor;
 use crate::stage::{Kernel, Stage};
 
 /// All buffers of a frame.
@@ -155,6 +156,14 @@ impl Backend for ParityBackend<'_> {
 
     fn take_timings(&mut self) -> Result<Vec<(Kernel, f64)>> {
         self.device.take_timings()
+    }
+
+    fn watch(&mut self, monitor: &Monitor) {
+        self.device.watch(monitor);
+    }
+
+    fn monitor(&self) -> &Monitor {
+        self.device.monitor()
     }
 
     fn peak_bytes(&self) -> u64 {

@@ -4,6 +4,7 @@
 use super::{Backend, BackendInfo, BufferSizes, FrameBuffer, MemoryLimits};
 use crate::error::Result;
 use crate::layout::{FrameParams, StepParams, TAIL_SUM_ENDS, TAIL_SUM_ROUNDS};
+use crate::monitor::Monitor;
 use crate::stage::Kernel;
 
 /// A launch that was recorded.
@@ -74,6 +75,14 @@ impl Backend for RecordingBackend<'_> {
 
     fn take_timings(&mut self) -> Result<Vec<(Kernel, f64)>> {
         self.inner.take_timings()
+    }
+
+    fn watch(&mut self, monitor: &Monitor) {
+        self.inner.watch(monitor);
+    }
+
+    fn monitor(&self) -> &Monitor {
+        self.inner.monitor()
     }
 
     fn peak_bytes(&self) -> u64 {

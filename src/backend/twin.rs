@@ -7,6 +7,7 @@ use std::time::Instant;
 use super::{Backend, BackendInfo, BufferSizes, FrameBuffer, MemoryLimits};
 use crate::error::Result;
 use crate::layout::{FrameParams, StepParams};
+use crate::monitor::Monitor;
 use crate::scene_buffers::{SceneBuffers, Shading};
 use crate::stage::Kernel;
 use crate::twin::{self, FrameBuffers, SceneArgs, Words};
@@ -19,6 +20,7 @@ pub struct TwinBackend {
     buffers: FrameBuffers,
     timings: Vec<(Kernel, f64)>,
     peak_bytes: u64,
+    monitor: Monitor,
 }
 
 impl TwinBackend {
@@ -32,6 +34,7 @@ impl TwinBackend {
             buffers: FrameBuffers::default(),
             timings: Vec::new(),
             peak_bytes,
+            monitor: Monitor::default(),
         }
     }
 
@@ -85,13 +88,16 @@ impl Backend for TwinBackend {
 
     fn begin(&mut self, frame: &FrameParams, sizes: &BufferSizes) -> Result<()> {
         if !self.sizes.is_some_and(|existing| existing.hold(sizes)) {
+            // Old buffers go first: both together may not fit.
+            (self.sizes, self.buffers) = (None, FrameBuffers::default());
+            let zeroed = |words| Words::zeroed_unless_cancelled(words, &self.monitor);
             self.buffers = FrameBuffers {
-                attributes: Words::zeroed(sizes.attributes),
-                counters: Words::zeroed(sizes.counters),
-                color: Words::zeroed(sizes.color),
-                list: Words::zeroed(sizes.list),
-                masks: Words::zeroed(sizes.masks),
-                sums: Words::zeroed(sizes.sums),
+                attributes: zeroed(sizes.attributes)?,
+                counters: zeroed(sizes.counters)?,
+                color: zeroed(sizes.color)?,
+                list: zeroed(sizes.list)?,
+                masks: zeroed(sizes.masks)?,
+                sums: zeroed(sizes.sums)?,
             };
             self.sizes = Some(*sizes);
             self.peak_bytes = self.peak_bytes.max(self.scene.bytes() + sizes.bytes());
@@ -103,7 +109,7 @@ impl Backend for TwinBackend {
     fn run(&mut self, kernel: Kernel, step: &StepParams) -> Result<()> {
         let Some(frame) = &self.frame else { return Ok(()) };
         let started = Instant::now();
-        twin::run(kernel, &scene_args(&self.scene, frame), step, &self.buffers);
+        twin::run(kernel, &scene_args(&self.scene, frame), step, &self.buffers, &self.monitor)?;
         self.timings.push((kernel, started.elapsed().as_secs_f64() * 1e3));
         Ok(())
     }
@@ -126,6 +132,14 @@ impl Backend for TwinBackend {
 
     fn take_timings(&mut self) -> Result<Vec<(Kernel, f64)>> {
         Ok(std::mem::take(&mut self.timings))
+    }
+
+    fn watch(&mut self, monitor: &Monitor) {
+        self.monitor = monitor.clone();
+    }
+
+    fn monitor(&self) -> &Monitor {
+        &self.monitor
     }
 
     fn peak_bytes(&self) -> u64 {

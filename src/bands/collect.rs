@@ -78,6 +78,12 @@ impl Collected {
         }
     }
 
+    /// Room for planes alone.
+    pub(crate) fn without_colors(frame: &FrameParams) -> Self {
+        let (colors, planes) = (Vec::new(), BTreeMap::new());
+        Collected { width: frame.width, colors, planes, sums: CounterSums::default() }
+    }
+
     /// Takes over a window that has just been drawn.
     ///
     /// # Errors
@@ -88,6 +94,7 @@ impl Collected {
         let first = color_index(frame, 0, rows.start);
         copy(&mut self.colors, self.width, frame, taken, |x, y| words[(color_index(frame, x, y) - first) as usize]);
         for (&plane, target) in &mut self.planes {
+            backend.monitor().check()?;
             let words = read_plane(backend, frame, plane)?;
             copy(target, self.width, frame, taken, |x, y| words[plane_index(frame, x, y) as usize]);
         }
@@ -133,7 +140,6 @@ pub fn sum_counters(
     sums: &mut CounterSums,
     first_time: bool,
 ) -> Result<()> {
-    let pixels = || (frame.window_begin..frame.window_end).flat_map(|y| (0..frame.width).map(move |x| (x, y)));
     let classes = match frame.block {
         1 => None,
         _ => Some(read_plane(backend, frame, PLANE_CLASS)?),
@@ -141,21 +147,27 @@ pub fn sum_counters(
     for counter in 0..COUNTER_COUNT {
         let words = read_plane(backend, frame, PLANE_COUNT + counter)?;
         let is_traversal = matches!(counter, COUNTER_TRAVERSAL_STEPS | COUNTER_TRIANGLE_TESTS);
-        for (x, y) in pixels() {
-            let at = plane_index(frame, x, y) as usize;
-            let count = u64::from(words[at]);
-            sums.counters[counter as usize] += count;
-            let class = classes.as_ref().map_or(CLASS_BASE, |classes| classes[at] & CLASS_MASK);
-            if let (true, Some(slot)) = (is_traversal, class_slot(class)) {
-                sums.work_by_class[slot] += count;
+        for y in frame.window_begin..frame.window_end {
+            backend.monitor().check()?;
+            for x in 0..frame.width {
+                let at = plane_index(frame, x, y) as usize;
+                let count = u64::from(words[at]);
+                sums.counters[counter as usize] += count;
+                let class = classes.as_ref().map_or(CLASS_BASE, |classes| classes[at] & CLASS_MASK);
+                if let (true, Some(slot)) = (is_traversal, class_slot(class)) {
+                    sums.work_by_class[slot] += count;
+                }
             }
         }
     }
     if let (true, Some(classes)) = (first_time, classes) {
-        for (x, y) in pixels().filter(|&(_, y)| (frame.interior_begin..frame.interior_end).contains(&y)) {
-            let class = classes[plane_index(frame, x, y) as usize];
-            for (test, sum) in Test::ALL.into_iter().zip(&mut sums.failed_tests) {
-                *sum += u64::from(class & test.fail_bit() != 0);
+        for y in frame.interior_begin..frame.interior_end {
+            backend.monitor().check()?;
+            for x in 0..frame.width {
+                let class = classes[plane_index(frame, x, y) as usize];
+                for (test, sum) in Test::ALL.into_iter().zip(&mut sums.failed_tests) {
+                    *sum += u64::from(class & test.fail_bit() != 0);
+                }
             }
         }
     }

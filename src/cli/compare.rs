@@ -11,14 +11,15 @@ use rarefy::picture::write_png;
 use rarefy::renderer::Renderer;
 use rarefy::stage::Stage;
 use rarefy::wave_model::{StageCost, WAVES, WaveModel};
-use rarefy::{Error, Result, report};
+use rarefy::{Cancel, Error, Result, report};
 
 use super::args::CompareArgs;
-use super::output::{check_json_writable, say, write_json};
-use super::progress::{Progress, make_renderer};
+use super::interrupt::Interrupt;
+use super::output::{check_json_writable, say, warn_all, write_json};
+use super::progress::{make_renderer, watched};
 
 /// Draws both ways in turn; prints the table, writes pictures and JSON.
-pub fn run(args: &CompareArgs) -> Result<()> {
+pub fn run(args: &CompareArgs, interrupt: &Interrupt) -> Result<()> {
     let options = args.draw.render_options(Mode::Adaptive)?;
     if args.frames == 0 {
         return Err(Error::option("--frames", "0 frames cannot be timed; at least 1 is needed"));
@@ -27,12 +28,15 @@ pub fn run(args: &CompareArgs) -> Result<()> {
     if let Some(folder) = &args.output {
         std::fs::create_dir_all(folder).map_err(|e| Error::io(folder, e))?;
     }
-    let (mut renderer, load_ms) = make_renderer(&args.draw.scene, &args.draw.renderer_options()?)?;
-    let progress = Progress::new();
-    let comparison = compare(&mut renderer, &options, args.frames, &|share| progress.update("frames", share));
-    progress.clear();
-    let comparison = comparison?;
-    let waves = if args.wave_model { Some(wave_model(&mut renderer, &options)?) } else { None };
+    let (mut renderer, load_ms) = make_renderer(&args.draw.scene, &args.draw.renderer_options()?, interrupt)?;
+    let notices = renderer.notices().len();
+    let comparison = watched(&mut renderer, interrupt, |renderer| compare(renderer, &options, args.frames))?;
+    let waves = if args.wave_model {
+        Some(watched(&mut renderer, interrupt, |renderer| wave_model(renderer, &options))?)
+    } else {
+        None
+    };
+    warn_all(&renderer.notices()[notices..]);
     let json = args.draw.json.as_deref();
     for line in table(&mut renderer, &options, &comparison) {
         say(json, &line);
@@ -41,7 +45,7 @@ pub fn run(args: &CompareArgs) -> Result<()> {
         say(json, &line);
     }
     if let Some(folder) = &args.output {
-        for line in write_pictures(folder, &options, &comparison)? {
+        for line in interrupt.watch(|cancel| write_pictures(folder, &options, &comparison, cancel))? {
             say(json, &line);
         }
     }
@@ -127,7 +131,7 @@ fn wave_table(model: &WaveModel) -> Vec<String> {
     lines
 }
 
-fn write_pictures(folder: &Path, options: &RenderOptions, c: &Comparison) -> Result<Vec<String>> {
+fn write_pictures(folder: &Path, options: &RenderOptions, c: &Comparison, cancel: &Cancel) -> Result<Vec<String>> {
     let frame = &c.adaptive_frame;
     let (width, height) = (frame.width, frame.height);
     let reference = Rgb8::new(width, height, &c.full_picture)?;
@@ -143,6 +147,7 @@ fn write_pictures(folder: &Path, options: &RenderOptions, c: &Comparison) -> Res
     let mut lines = Vec::new();
     for (name, (width, height), pixels) in pictures {
         let path = folder.join(name);
+        cancel.check()?;
         write_png(&path, width, height, &pixels)?;
         lines.push(path.display().to_string());
     }

@@ -6,15 +6,13 @@ use rarefy::scene::doctor::{Severity, examine};
 use serde_json::json;
 
 use super::args::DoctorArgs;
+use super::interrupt::Interrupt;
 use super::output::{say, write_json};
-use super::progress::{Progress, load_scene};
+use super::progress::load_scene;
 
 /// Prints what is odd about a scene.
-pub fn run(args: &DoctorArgs) -> Result<()> {
-    let progress = Progress::new();
-    let scene = load_scene(&args.scene, &progress);
-    progress.clear();
-    let scene = scene?;
+pub fn run(args: &DoctorArgs, interrupt: &Interrupt) -> Result<()> {
+    let scene = load_scene(&args.scene, interrupt)?;
     let findings = examine(&scene);
     let json = args.json.as_deref();
     let summary = format!(

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The command line: parses, calls the library, prints. Exit status: 0 good, 1 a comparison or self-test failed,
-//! 2 error.
+//! 2 error, 130 interrupted.
 
 mod args;
 mod compare;
 mod devices;
 mod diff;
 mod doctor;
+mod interrupt;
 mod output;
 mod progress;
 mod render;
@@ -15,16 +16,19 @@ mod selftest;
 use std::process::ExitCode;
 
 use clap::Parser;
-use rarefy::Result;
+use rarefy::{Error, Result};
 
 use args::{Cli, Command};
+use interrupt::Interrupt;
 
 /// Runs the command that the process was started with.
 pub fn run() -> ExitCode {
     // clap ends with status 2 on a wrong command line, as this program's errors do.
     let cli = Cli::parse();
-    match dispatch(&cli.command) {
+    let interrupt = Interrupt::catch();
+    match dispatch(&cli.command, &interrupt) {
         Ok(good) => ExitCode::from(if good { 0 } else { 1 }),
+        Err(Error::Cancelled) => interrupt::end(),
         Err(error) => {
             eprintln!("rarefy: {error}");
             ExitCode::from(2)
@@ -32,16 +36,16 @@ pub fn run() -> ExitCode {
     }
 }
 
-fn dispatch(command: &Command) -> Result<bool> {
+fn dispatch(command: &Command, interrupt: &Interrupt) -> Result<bool> {
     match command {
-        Command::Render(args) => render::run(args).map(|()| true),
-        Command::Compare(args) => compare::run(args).map(|()| true),
+        Command::Render(args) => render::run(args, interrupt).map(|()| true),
+        Command::Compare(args) => compare::run(args, interrupt).map(|()| true),
         Command::Diff(args) => diff::run(args).map(|()| true),
         Command::Devices(args) => devices::run(args).map(|()| true),
         Command::Selftest(args) => selftest::run(args),
-        Command::Doctor(args) => doctor::run(args).map(|()| true),
+        Command::Doctor(args) => doctor::run(args, interrupt).map(|()| true),
         Command::MakeScene(args) => {
-            rarefy::builtin::write(&args.name, &args.output)?;
+            interrupt.watch(|_| rarefy::builtin::write(&args.name, &args.output))?;
             output::say(None, &args.output.display().to_string());
             Ok(true)
         }

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Loading a scene and making a renderer with a progress bar, on a terminal only and only if it takes a while.
+//! Long work with a progress bar, on a terminal only and only if it takes a while.
 
 use std::path::Path;
-use std::sync::Mutex;
+use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use rarefy::monitor::{Event, Monitor};
 use rarefy::renderer::{Renderer, RendererOptions};
 use rarefy::{Result, Scene, builtin, scene};
 
+use super::interrupt::Interrupt;
 use super::output::warn_all;
 
 /// Nothing is shown before this much time has passed.
@@ -54,25 +56,56 @@ impl Progress {
     }
 }
 
+/// Does `work` with a bar that is taken away at its end; Ctrl-C cancels it.
+fn with_bar<T>(interrupt: &Interrupt, work: impl FnOnce(&Monitor) -> Result<T>) -> Result<T> {
+    let progress = Arc::new(Progress::new());
+    let shown = Arc::clone(&progress);
+    let monitor = Monitor::new(move |event| {
+        if let Event::Progress { phase, share } = event {
+            shown.update(phase, share);
+        }
+    });
+    let done = interrupt.watch(|cancel| work(&monitor.with_cancel(cancel)));
+    progress.clear();
+    done
+}
+
+/// Does `work` with a renderer, with a bar.
+pub fn watched<T>(
+    renderer: &mut Renderer,
+    interrupt: &Interrupt,
+    work: impl FnOnce(&mut Renderer) -> Result<T>,
+) -> Result<T> {
+    with_bar(interrupt, |monitor| {
+        renderer.set_monitor(monitor);
+        let done = work(renderer);
+        renderer.set_monitor(&Monitor::default());
+        done
+    })
+}
+
 /// The scene that `name` means: a file or folder, else a built-in scene.
-pub fn load_scene(name: &str, progress: &Progress) -> Result<Scene> {
+pub fn load_scene(name: &str, interrupt: &Interrupt) -> Result<Scene> {
+    with_bar(interrupt, |monitor| load(name, monitor))
+}
+
+fn load(name: &str, monitor: &Monitor) -> Result<Scene> {
     let path = Path::new(name);
     if !path.exists() && builtin::NAMES.contains(&name) {
         return builtin::to_scene(name);
     }
-    scene::load(path, &|phase, share| progress.update(phase, share))
+    scene::load(path, monitor)
 }
 
 /// Loads a scene and makes a renderer of it; the milliseconds are those of the loading.
-pub fn make_renderer(name: &str, options: &RendererOptions) -> Result<(Renderer, f64)> {
-    let progress = Progress::new();
-    let started = Instant::now();
-    let scene = load_scene(name, &progress)?;
-    let load_ms = started.elapsed().as_secs_f64() * 1e3;
-    let warnings = scene.warnings.clone();
-    let renderer = Renderer::new(scene, options, &|phase, share| progress.update(phase, share));
-    progress.clear();
-    let renderer = renderer?;
+pub fn make_renderer(name: &str, options: &RendererOptions, interrupt: &Interrupt) -> Result<(Renderer, f64)> {
+    let (renderer, load_ms, warnings) = with_bar(interrupt, |monitor| {
+        let started = Instant::now();
+        let scene = load(name, monitor)?;
+        let load_ms = started.elapsed().as_secs_f64() * 1e3;
+        let warnings = scene.warnings.clone();
+        Ok((Renderer::new(scene, options, monitor)?, load_ms, warnings))
+    })?;
     warn_all(&warnings);
     warn_all(renderer.notices());
     Ok((renderer, load_ms))

@@ -10,11 +10,12 @@ use rarefy::renderer::Keep;
 use rarefy::{Error, Result, report};
 
 use super::args::{ModeArg, RenderArgs};
-use super::output::{check_json_writable, check_writable, say, write_json};
-use super::progress::make_renderer;
+use super::interrupt::Interrupt;
+use super::output::{check_json_writable, check_writable, say, warn_all, write_json};
+use super::progress::{make_renderer, watched};
 
 /// Draws one frame; writes the picture, the layers and the statistics.
-pub fn run(args: &RenderArgs) -> Result<()> {
+pub fn run(args: &RenderArgs, interrupt: &Interrupt) -> Result<()> {
     let mode = match args.mode {
         ModeArg::Full => Mode::Full,
         ModeArg::Adaptive => Mode::Adaptive,
@@ -32,13 +33,21 @@ pub fn run(args: &RenderArgs) -> Result<()> {
     check_writable(&args.output)?;
     check_json_writable(args.draw.json.as_deref())?;
 
-    let (mut renderer, load_ms) = make_renderer(&args.draw.scene, &args.draw.renderer_options()?)?;
-    let frame = renderer.render(&options, keep)?;
-    write_png(&args.output, frame.width, frame.height, &frame.pixels)?;
-    for (layer, path) in &layers {
-        let (width, height) = if *layer == Layer::Color { (frame.width, frame.height) } else { options.sample_size() };
-        write_png(path, width, height, &layers::draw(*layer, &mut renderer, &frame)?)?;
-    }
+    let (mut renderer, load_ms) = make_renderer(&args.draw.scene, &args.draw.renderer_options()?, interrupt)?;
+    let notices = renderer.notices().len();
+    let frame = watched(&mut renderer, interrupt, |renderer| renderer.render(&options, keep))?;
+    warn_all(&renderer.notices()[notices..]);
+    // File by file: Ctrl-C lets the one that is being written be finished.
+    interrupt.watch(|cancel| {
+        write_png(&args.output, frame.width, frame.height, &frame.pixels)?;
+        for (layer, path) in &layers {
+            cancel.check()?;
+            let is_color = *layer == Layer::Color;
+            let (width, height) = if is_color { (frame.width, frame.height) } else { options.sample_size() };
+            write_png(path, width, height, &layers::draw(*layer, &mut renderer, &frame)?)?;
+        }
+        Ok(())
+    })?;
     let json = args.draw.json.as_deref();
     let info = renderer.info();
     say(

@@ -11,6 +11,7 @@ use glam::Vec3;
 use super::clip::{Cell, Corners, Primitive, cell_epsilon, split_primitive, whole};
 use super::sah::{Costs, Scratch, Split, best_split};
 use super::{KdNode, KdTree, MAX_DEPTH};
+use crate::monitor::Monitor;
 use crate::{Error, Result};
 
 /// Cost of an inner node on a ray's way, the unit of [`INTERSECTION_COST`].
@@ -36,6 +37,8 @@ const MIN_BUDGET_BYTES: u64 = 64 << 10;
 const MAX_TREE_BYTES: u64 = 4 << 30;
 /// Nodes with more triangles than this grow in parallel.
 const FORK_ABOVE: usize = 2048;
+/// Triangles that are taken up before it is asked whether the work is to end.
+const TRIANGLES_AT_ONCE: usize = 1 << 15;
 /// Coordinates beyond this overflow in the intersection test's products.
 const LARGEST_COORDINATE: f32 = 1.0e12;
 
@@ -95,20 +98,22 @@ impl BuildOptions {
 impl KdTree {
     /// Builds the tree over `triangles`, whose corners are indices into `positions`.
     ///
-    /// `progress` is called with the share that is done, from 0 to 1, never decreasing, from any thread.
+    /// `monitor` hears which share is done, and can end it.
     ///
     /// # Errors
     ///
     /// [`Error::InvalidOption`] for options out of range, [`Error::InvalidScene`] for indices out of range and for
     /// coordinates that are not finite or beyond 1e12, [`Error::LimitExceeded`] if the memory limit is below what a
-    /// single leaf needs.
+    /// single leaf needs, [`Error::Cancelled`].
     pub fn build(
         positions: &[Vec3],
         triangles: &[[u32; 3]],
         options: &BuildOptions,
-        progress: &(dyn Fn(f32) + Sync),
+        monitor: &Monitor,
     ) -> Result<KdTree> {
         options.check()?;
+        monitor.check()?;
+        let monitor = monitor.part("kd-tree", 0.0, 1.0);
         let (cell, epsilon) = scene_cell(positions, triangles)?;
         let budget = budget_bytes(triangles.len() as u64, options)?;
         let auto_depth = 8 + (1.3 * (triangles.len().max(1) as f64).log2()) as usize;
@@ -123,11 +128,12 @@ impl KdTree {
             },
             max_depth: options.max_depth.unwrap_or(auto_depth).min(MAX_DEPTH),
             serial: options.threads == Some(1),
-            progress: Progress { done: Mutex::new(0.0), report: progress },
+            monitor: &monitor,
+            done: Mutex::new(0.0),
         };
-        progress(0.0);
+        monitor.tell(0.0);
         let grow = || {
-            let primitives = (0u32..).zip(triangles).map(|(id, t)| whole(id, builder.corners(t), epsilon)).collect();
+            let primitives = builder.primitives();
             builder.grow(primitives, Place { cell, depth: 0, budget, weight: 1.0 })
         };
         let grown = match options.threads {
@@ -138,6 +144,8 @@ impl KdTree {
                     .install(grow)
             }
         };
+        // A cancelled tree is a stump.
+        monitor.check()?;
         let mut tree =
             KdTree { nodes: Vec::new(), leaf_triangles: Vec::new(), bounds_min: cell.lo, bounds_max: cell.hi };
         let (nodes, entries) = grown.size();
@@ -146,7 +154,8 @@ impl KdTree {
         // The root, and the unused node that brings pairs to even indices.
         tree.nodes.extend([KdNode::leaf(0, 0); 2]);
         grown.place(0, &mut tree);
-        progress(1.0);
+        monitor.check()?;
+        monitor.tell(1.0);
         Ok(tree)
     }
 }
@@ -191,22 +200,6 @@ fn budget_bytes(triangles: u64, options: &BuildOptions) -> Result<u64> {
         });
     }
     Ok((allowed - fixed).min((MAX_BYTES_PER_TRIANGLE * triangles).max(MIN_BUDGET_BYTES)))
-}
-
-/// Adds up the shares of finished subtrees.
-struct Progress<'a> {
-    done: Mutex<f64>,
-    report: &'a (dyn Fn(f32) + Sync),
-}
-
-impl Progress<'_> {
-    fn add(&self, share: f64) {
-        // Reported under the lock, so that the caller never sees a lower value after a higher one. A panic in `report`
-        // poisons the lock; the number in it is still good.
-        let mut done = self.done.lock().unwrap_or_else(|e| e.into_inner());
-        *done += share;
-        (self.report)(done.min(1.0) as f32);
-    }
 }
 
 /// Where a node stands.
@@ -306,7 +299,9 @@ struct Builder<'a> {
     costs: Costs,
     max_depth: usize,
     serial: bool,
-    progress: Progress<'a>,
+    monitor: &'a Monitor,
+    /// The shares of finished subtrees together.
+    done: Mutex<f64>,
 }
 
 impl Builder<'_> {
@@ -316,6 +311,26 @@ impl Builder<'_> {
 
     fn exact_corners(&self, id: u32) -> Corners {
         self.corners(&self.triangles[id as usize]).map(|p| p.as_dvec3().to_array())
+    }
+
+    /// All triangles, or some of them if the work is to end.
+    fn primitives(&self) -> Vec<Primitive> {
+        let mut primitives = Vec::with_capacity(self.triangles.len());
+        for (first, chunk) in (0u32..).step_by(TRIANGLES_AT_ONCE).zip(self.triangles.chunks(TRIANGLES_AT_ONCE)) {
+            if self.monitor.cancel().is_cancelled() {
+                break;
+            }
+            primitives.extend((first..).zip(chunk).map(|(id, t)| whole(id, self.corners(t), self.epsilon)));
+        }
+        primitives
+    }
+
+    /// Adds the share of a finished subtree.
+    fn count(&self, share: f64) {
+        // A panic in another thread poisons the lock; the number in it is still good.
+        let mut done = self.done.lock().unwrap_or_else(|e| e.into_inner());
+        *done += share;
+        self.monitor.tell(*done as f32);
     }
 
     /// Grows the tree over `primitives`, in parallel while there are many.
@@ -334,7 +349,7 @@ impl Builder<'_> {
         }
         let mut sprout = Sprout { nodes: Vec::new(), leaf_triangles: Vec::new(), scratch, spare: Vec::new() };
         let root = self.grow_serially(&mut primitives, &place, &mut sprout);
-        self.progress.add(place.weight);
+        self.count(place.weight);
         Grown::Subtree { root, nodes: sprout.nodes, leaf_triangles: sprout.leaf_triangles }
     }
 
@@ -358,9 +373,10 @@ impl Builder<'_> {
         KdNode::inner(split.axis as u32, split.position, pair as u32)
     }
 
-    /// The plane that splits a node, or `None` for a leaf: nothing is cheaper, or depth or memory are used up.
+    /// The plane that splits a node, or `None` for a leaf: nothing is cheaper, depth or memory are used up, or the work
+    /// is to end, which is seen once all has come to leaves.
     fn choose(&self, primitives: &[Primitive], place: &Place, scratch: &mut Scratch) -> Option<Split> {
-        if place.depth >= self.max_depth {
+        if place.depth >= self.max_depth || self.monitor.cancel().is_cancelled() {
             return None;
         }
         let split = best_split(primitives, &place.cell, &self.costs, scratch)?;

@@ -16,6 +16,9 @@ use super::door::{Door, Shared};
 use super::handle::Handle;
 use crate::{Error, Result};
 
+/// Larger transfers go in parts, between which they can be cancelled.
+const TRANSFER_BYTES: usize = 32 << 20;
+
 /// Device memory for `len` values of type `T`. Released, and no longer counted, when dropped.
 pub struct Buffer<T> {
     memory: Handle,
@@ -133,21 +136,26 @@ impl Door {
         if values.is_empty() {
             return Ok(());
         }
-        let bytes: &[u8] = bytemuck::cast_slice(values);
-        // SAFETY: `place` checked that the range lies within the buffer; the call blocks, so `bytes` outlives it.
-        let event = unsafe {
-            enqueue_write_buffer(
-                self.shared.queue.raw(),
-                buffer.memory.raw(),
-                CL_BLOCKING,
-                offset,
-                bytes.len(),
-                bytes.as_ptr().cast(),
-                0,
-                std::ptr::null(),
-            )
-        };
-        self.done("clEnqueueWriteBuffer", buffer, event)
+        let all: &[u8] = bytemuck::cast_slice(values);
+        for (number, bytes) in all.chunks(TRANSFER_BYTES).enumerate() {
+            self.check_watch("clEnqueueWriteBuffer")?;
+            // SAFETY: `place` checked that the range, of which `bytes` is a part, lies within the buffer; the call
+            // blocks, so `bytes` outlives it.
+            let event = unsafe {
+                enqueue_write_buffer(
+                    self.shared.queue.raw(),
+                    buffer.memory.raw(),
+                    CL_BLOCKING,
+                    offset + number * TRANSFER_BYTES,
+                    bytes.len(),
+                    bytes.as_ptr().cast(),
+                    0,
+                    std::ptr::null(),
+                )
+            };
+            self.done("clEnqueueWriteBuffer", buffer, event)?;
+        }
+        Ok(())
     }
 
     /// Reads the values of `range`, after everything enqueued before.
@@ -166,21 +174,26 @@ impl Door {
         if values.is_empty() {
             return Ok(());
         }
-        let bytes: &mut [u8] = bytemuck::cast_slice_mut(values);
-        // SAFETY: `place` checked that the range lies within the buffer; the call blocks, so `bytes` outlives it.
-        let event = unsafe {
-            enqueue_read_buffer(
-                self.shared.queue.raw(),
-                buffer.memory.raw(),
-                CL_BLOCKING,
-                offset,
-                bytes.len(),
-                bytes.as_mut_ptr().cast(),
-                0,
-                std::ptr::null(),
-            )
-        };
-        self.done("clEnqueueReadBuffer", buffer, event)
+        let all: &mut [u8] = bytemuck::cast_slice_mut(values);
+        for (number, bytes) in all.chunks_mut(TRANSFER_BYTES).enumerate() {
+            self.check_watch("clEnqueueReadBuffer")?;
+            // SAFETY: `place` checked that the range, of which `bytes` is a part, lies within the buffer; the call
+            // blocks, so `bytes` outlives it.
+            let event = unsafe {
+                enqueue_read_buffer(
+                    self.shared.queue.raw(),
+                    buffer.memory.raw(),
+                    CL_BLOCKING,
+                    offset + number * TRANSFER_BYTES,
+                    bytes.len(),
+                    bytes.as_mut_ptr().cast(),
+                    0,
+                    std::ptr::null(),
+                )
+            };
+            self.done("clEnqueueReadBuffer", buffer, event)?;
+        }
+        Ok(())
     }
 
     /// Sets every byte of the buffer to 0, in order with launches.

@@ -5,6 +5,12 @@ use crate::Error;
 
 /// The status of an enqueue on a device that ran out of something; also what a phone's watchdog leaves behind.
 pub(crate) const OUT_OF_RESOURCES: i32 = -5;
+/// The device is gone.
+pub(crate) const DEVICE_NOT_AVAILABLE: i32 = -2;
+/// A command that was waited for failed.
+pub(crate) const EXEC_STATUS_ERROR: i32 = -14;
+/// The queue does not work any more.
+pub(crate) const INVALID_COMMAND_QUEUE: i32 = -36;
 /// A kernel does not build.
 pub(crate) const BUILD_PROGRAM_FAILURE: i32 = -11;
 /// An object belongs to another context.
@@ -83,6 +89,14 @@ pub fn name(code: i32) -> &'static str {
         -2001 => "the OpenCL library lacks this function",
         _ => "unknown code",
     }
+}
+
+/// Whether a call failed because the device or its context is gone, as after a watchdog struck: all that was made on it
+/// is lost, a new context may work.
+pub(crate) fn is_loss(error: &Error) -> bool {
+    const LOSSES: [i32; 5] =
+        [DEVICE_NOT_AVAILABLE, OUT_OF_RESOURCES, EXEC_STATUS_ERROR, INVALID_CONTEXT, INVALID_COMMAND_QUEUE];
+    matches!(error, Error::OpenCl { code, .. } if LOSSES.contains(code))
 }
 
 /// An [`Error::OpenCl`] for `call`.

@@ -218,9 +218,10 @@ fn examine(platform: *mut c_void, platform_name: &str, id: *mut c_void) -> Devic
         platform: platform_name.to_string(),
         kind,
     };
-    // A CPU has no watchdog, and its display does not wait for OpenCL.
-    let gpu = kind == DeviceKind::Gpu;
-    profile.set_choices(Choices::for_device(gpu, gpu.then_some(25.0)));
+    // A CPU has no watchdog, and its display does not wait for OpenCL, but whoever cancels does: there, enqueues are
+    // cheap enough for shorter slices.
+    let slice_ms = if kind == DeviceKind::Cpu { 5.0 } else { 25.0 };
+    profile.set_choices(Choices::for_device(kind == DeviceKind::Gpu, Some(slice_ms)));
     profile.set_device(format!("{}, {platform_name}, {}", info.name, info.version));
     DeviceFound { id: DeviceId(id), info, profile }
 }

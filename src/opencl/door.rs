@@ -8,12 +8,14 @@ use opencl3::command_queue::{CL_QUEUE_PROFILING_ENABLE, create_command_queue, fi
 use opencl3::context::context::create_context;
 
 use super::cache::{Cache, CacheFolder};
-use super::codes::check;
+use super::codes::{self, check};
 use super::discover::{DeviceInfo, DeviceKind, discover_with};
+use super::faults::Faults;
 use super::handle::Handle;
 use super::limits::Limits;
 use super::slices::Planner;
-use super::timing::Timing;
+use super::timing::{Timing, Wait};
+use crate::monitor::Monitor;
 use crate::profiles::{Choices, Profile};
 use crate::{Error, Result};
 
@@ -32,9 +34,8 @@ pub struct OpenOptions {
     pub cache: CacheFolder,
     /// For tests: the most work-items of every slice.
     pub slice_items: Option<u64>,
-    /// For tests: this launch (counting enqueues from 0) fails with `CL_OUT_OF_RESOURCES`, as on a phone whose watchdog
-    /// struck.
-    pub fail_enqueue: Option<u64>,
+    /// For tests: when the device is lost.
+    pub faults: Faults,
 }
 
 /// The memory that a door's buffers use, in bytes.
@@ -90,7 +91,9 @@ pub(super) struct State {
     pub planner: Planner,
     pub timing: Timing,
     pub enqueues: u64,
-    pub fail_enqueue: Option<u64>,
+    pub monitor: Monitor,
+    /// By a fault: nothing works any more.
+    pub lost: bool,
 }
 
 /// An opened OpenCL device: the only way to memory, programs and launches.
@@ -103,8 +106,13 @@ pub struct Door {
     pub(super) verdicts: Cache,
     pub(super) state: Mutex<State>,
     choices: Choices,
-    profile_name: Option<String>,
+    options: OpenOptions,
+    /// How often the device was opened again.
+    reopened: u32,
 }
+
+/// Slices are not made shorter than this when a device was lost, in milliseconds.
+const LEAST_SLICE_MS: f64 = 1.0;
 
 /// Locks, even after a panic in another thread: all state behind these locks is valid at any time.
 pub(super) fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
@@ -120,6 +128,11 @@ pub fn open(index: Option<usize>, profile: Option<&Profile>) -> Result<Door> {
 
 /// As [`open`], with all options.
 pub fn open_with(options: &OpenOptions) -> Result<Door> {
+    open_again(options, 0)
+}
+
+/// Opens a device for the `reopened`th time again; slices are halved each time.
+fn open_again(options: &OpenOptions, reopened: u32) -> Result<Door> {
     let mut found = discover_with(options.library.as_deref());
     let count = found.devices.len();
     if count == 0 {
@@ -143,11 +156,18 @@ pub fn open_with(options: &OpenOptions) -> Result<Door> {
     log::info!("OpenCL device: {}", device.info.describe());
     // A simulator's times say nothing about any watchdog.
     let watchdog_ms = limits.watchdog_ms.filter(|_| !device.info.is_simulator());
+    let sliced = options.profile.is_some() || !device.info.is_simulator();
+    let slice_ms = limits
+        .slice_ms
+        .filter(|_| sliced)
+        .map(|ms| (ms * 0.5f64.powi(reopened.min(64) as i32)).max(LEAST_SLICE_MS.min(ms)));
+    let slice_items = options.slice_items.map(|items| (items >> reopened.min(63)).max(1));
     let state = State {
-        planner: Planner::new(limits.slice_ms, options.slice_items),
+        planner: Planner::new(slice_ms, slice_items),
         timing: Timing::new(watchdog_ms),
         enqueues: 0,
-        fail_enqueue: options.fail_enqueue,
+        monitor: Monitor::default(),
+        lost: false,
     };
     // PoCL has a cache of its own, unless the variable says otherwise.
     let pocl_caches = std::env::var_os("POCL_KERNEL_CACHE").is_none_or(|value| value != "0");
@@ -167,8 +187,21 @@ pub fn open_with(options: &OpenOptions) -> Result<Door> {
         verdicts: Cache::verdicts(&options.cache),
         state: Mutex::new(state),
         choices,
-        profile_name: options.profile.as_ref().map(|profile| profile.name().to_string()),
+        options: options.clone(),
+        reopened,
     })
+}
+
+impl State {
+    /// Goes on unless the work is to end; then waits for what is in flight.
+    pub fn check_monitor(&mut self) -> Result<()> {
+        let checked = self.monitor.check();
+        if checked.is_err() {
+            // Nobody is interested in how it ended.
+            let _ = self.timing.harvest(&mut self.planner, Wait::ForAll);
+        }
+        checked
+    }
 }
 
 impl Door {
@@ -189,7 +222,7 @@ impl Door {
 
     /// The profile that it obeys, if any.
     pub fn profile_name(&self) -> Option<&str> {
-        self.profile_name.as_deref()
+        self.options.profile.as_ref().map(Profile::name)
     }
 
     /// Whether the device is the host's processor.
@@ -208,11 +241,45 @@ impl Door {
         memory.peak_bytes = memory.current_bytes;
     }
 
+    /// When the device is to be lost.
+    pub(super) fn faults(&self) -> &Faults {
+        &self.options.faults
+    }
+
+    /// Opens the same device once more, after it was lost: a new context, slices of half the time. Everything made on
+    /// this door stays useless.
+    pub(crate) fn reopen(&self) -> Result<Door> {
+        open_again(&self.options, self.reopened + 1)
+    }
+
+    /// The duration that slices aim at, in milliseconds; `None`: whole launches.
+    pub fn slice_ms(&self) -> Option<f64> {
+        lock(&self.state).planner.target_ms()
+    }
+
+    /// From here on `monitor` watches launches and transfers: it hears how far a launch is, and ends it between two
+    /// slices. What is in flight then is waited for.
+    pub fn watch(&self, monitor: &Monitor) {
+        lock(&self.state).monitor = monitor.clone();
+    }
+
+    /// Goes on unless the device was lost by a fault, or the work is to end.
+    pub(super) fn check_watch(&self, call: &str) -> Result<()> {
+        let state = &mut *lock(&self.state);
+        if state.lost {
+            return Err(codes::error(call, codes::INVALID_COMMAND_QUEUE));
+        }
+        state.check_monitor()
+    }
+
     /// Waits for everything enqueued. A launch that failed on the device is an error here.
     pub fn finish(&self) -> Result<()> {
         let finished = check("clFinish", finish(self.shared.queue.raw()));
         let state = &mut *lock(&self.state);
-        let harvested = state.timing.harvest(&mut state.planner, true);
+        let harvested = state.timing.harvest(&mut state.planner, Wait::ForAll);
+        if state.lost {
+            return Err(codes::error("clFinish", codes::INVALID_COMMAND_QUEUE));
+        }
         // What failed first explains more than the queue's own answer.
         harvested.and(finished)
     }

@@ -8,10 +8,11 @@ use opencl3::kernel::set_kernel_arg;
 
 use super::buffer::AnyBuffer;
 use super::codes::{self, check};
-use super::door::{Door, lock};
+use super::door::{Door, State, lock};
 use super::handle::Handle;
 use super::program::Kernel;
 use super::slices::Slicer;
+use super::timing::Wait;
 use crate::Result;
 
 /// One kernel argument.
@@ -54,8 +55,8 @@ impl Door {
         self.limits().fit_work_group(wanted, kernel.work_group_size(), barrier)
     }
 
-    /// Enqueues a launch, cut into slices, and returns without waiting for its end (except for the first slice of a
-    /// stage, which is measured).
+    /// Enqueues a launch, cut into slices, and returns without waiting for its end. The first slice of a stage is waited
+    /// for and measured, and no more than about one slice lies in the queue when another one is added.
     ///
     /// Kernels find their place by `get_global_id`, which includes a slice's offset; `get_group_id` and
     /// `get_global_size` are those of the slice.
@@ -63,38 +64,58 @@ impl Door {
         let label = launch.label;
         let plan = self.plan(launch)?;
         let mut slicer = Slicer::new(plan.groups, plan.step);
+        let local = plan.local.map(|[width, height]| [width, height, 1]);
+        // PoCL compiles a kernel once for launches that begin at zero and once for others: with an offset along an axis
+        // that no kernel looks at, the first slice is like the others, and kernels are compiled once.
+        let aside = usize::from(self.is_cpu());
         let state = &mut *lock(&self.state);
-        state.timing.harvest(&mut state.planner, false)?;
+        state.timing.harvest(&mut state.planner, Wait::No)?;
         set_args(launch)?;
         while let Some(slice) = slicer.next(state.planner.items(label)) {
-            let number = state.enqueues;
+            let queued_ms = state.planner.queued_ms();
+            state.timing.harvest(&mut state.planner, Wait::UntilBelow(queued_ms))?;
+            state.check_monitor()?;
             state.enqueues += 1;
-            if state.fail_enqueue == Some(number) {
-                return Err(codes::error(format!("clEnqueueNDRangeKernel of `{label}`"), codes::OUT_OF_RESOURCES));
+            if let Some(code) = self.strike(state) {
+                return Err(codes::error(format!("clEnqueueNDRangeKernel of `{label}`"), code));
             }
+            let offset = [slice.offset[0], slice.offset[1], aside];
+            let size = [slice.size[0], slice.size[1], 1];
             // SAFETY: all arguments are set to live objects of this context and stay alive until the call has retained
-            // them; the arrays have the two entries that the dimension says. What the kernel does within its buffers is
+            // them; the arrays have the three entries that the dimension says. What the kernel does within its buffers is
             // the kernel's: its source is part of this crate.
             let event = unsafe {
                 enqueue_nd_range_kernel(
                     self.shared.queue.raw(),
                     launch.kernel.raw(),
-                    2,
-                    slice.offset.as_ptr(),
-                    slice.size.as_ptr(),
-                    plan.local.as_ref().map_or(std::ptr::null(), |local| local.as_ptr()),
+                    3,
+                    offset.as_ptr(),
+                    size.as_ptr(),
+                    local.as_ref().map_or(std::ptr::null(), |local| local.as_ptr()),
                     0,
                     std::ptr::null(),
                 )
             };
             let event = Handle::event(check_launch(label, event)?);
             let divisible = slice.size[0] > plan.step[0] || slice.size[1] > plan.step[1];
-            state.timing.push(label, event, slice.items(), divisible);
+            let expected_ms = state.planner.expected_ms(label, slice.items());
+            state.timing.push(label, event, slice.items(), divisible, expected_ms);
             check("clFlush", flush(self.shared.queue.raw()))?;
-            let measure = state.planner.wants_measure(label);
+            let measure = if state.planner.wants_measure(label) { Wait::ForAll } else { Wait::No };
             state.timing.harvest(&mut state.planner, measure)?;
+            state.monitor.tell(slicer.share_cut());
         }
         Ok(())
+    }
+
+    /// The status that an enqueue fails with, if the device is lost or a fault is due.
+    fn strike(&self, state: &mut State) -> Option<i32> {
+        if state.lost {
+            return Some(codes::INVALID_COMMAND_QUEUE);
+        }
+        let code = self.faults().strike();
+        state.lost = code.is_some();
+        code
     }
 
     /// Checks every limit and works out the launch in work-groups.

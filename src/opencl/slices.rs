@@ -34,6 +34,12 @@ impl Slicer {
         Slicer { local, groups, next: [0, 0] }
     }
 
+    /// The share of the launch that has been cut off.
+    pub fn share_cut(&self) -> f32 {
+        let [columns, rows] = self.groups.map(|groups| groups.max(1) as f32);
+        (self.next[1] as f32 + self.next[0] as f32 / columns) / rows
+    }
+
     /// The next slice, of at most `most` work-items or one work-group if that has more; `None` at the end.
     pub fn next(&mut self, most: u64) -> Option<Slice> {
         let [columns, rows] = self.groups;
@@ -76,6 +82,8 @@ struct Stage {
     label: &'static str,
     items: u64,
     measured: bool,
+    /// What a work-item took in the last slice.
+    item_ms: f64,
 }
 
 /// Where a stage starts: 256 work-groups of 64, a few milliseconds on the slowest phone.
@@ -88,6 +96,11 @@ const CEILING_ITEMS: u64 = 4 << 20;
 impl Planner {
     pub fn new(target_ms: Option<f64>, forced: Option<u64>) -> Self {
         Planner { target_ms, forced, stages: Vec::new() }
+    }
+
+    /// The duration that slices aim at, in milliseconds.
+    pub fn target_ms(&self) -> Option<f64> {
+        self.target_ms
     }
 
     /// Forgets everything learned.
@@ -106,6 +119,18 @@ impl Planner {
         }
     }
 
+    /// How long a slice of a stage will take, as far as is known, in milliseconds.
+    pub fn expected_ms(&self, label: &'static str, items: u64) -> f64 {
+        let stage = self.stages.iter().find(|stage| stage.label == label);
+        stage.map_or(0.0, |stage| stage.item_ms * items as f64)
+    }
+
+    /// How much work may lie in the queue when a slice is added to it, in milliseconds: one slice, so that the device
+    /// always has the next one, and whoever cancels waits for two at most.
+    pub fn queued_ms(&self) -> f64 {
+        self.target_ms.unwrap_or(f64::INFINITY)
+    }
+
     /// Whether a slice of the stage should be waited for and measured before more follow.
     pub fn wants_measure(&self, label: &'static str) -> bool {
         self.forced.is_none()
@@ -119,12 +144,13 @@ impl Planner {
         let stage = match self.stages.iter_mut().position(|stage| stage.label == label) {
             Some(index) => &mut self.stages[index],
             None => {
-                self.stages.push(Stage { label, items: FIRST_ITEMS, measured: false });
+                self.stages.push(Stage { label, items: FIRST_ITEMS, measured: false, item_ms: 0.0 });
                 let last = self.stages.len() - 1;
                 &mut self.stages[last]
             }
         };
         let first = !std::mem::replace(&mut stage.measured, true);
+        stage.item_ms = ms / items.max(1) as f64;
         let fits = items as f64 * target / ms.max(1e-3);
         let wanted = if ms > target {
             // Too long: shrink at once, whatever the slice's size was.
@@ -199,6 +225,17 @@ mod tests {
         }
         assert_eq!(planner.items("step1"), CEILING_ITEMS);
         assert_eq!(planner.items("step2a"), FIRST_ITEMS, "stages do not mix");
+    }
+
+    #[test]
+    fn what_lies_in_the_queue_is_known_from_the_last_slice() {
+        let mut planner = Planner::new(Some(20.0), None);
+        assert_eq!(planner.expected_ms("step1", 1000), 0.0, "not measured yet");
+        planner.learn("step1", 1000, 5.0);
+        planner.learn("step2a", 1000, 1.0);
+        assert!((planner.expected_ms("step1", 400) - 2.0).abs() < 1e-9);
+        assert_eq!(planner.queued_ms(), 20.0);
+        assert_eq!(Planner::new(None, None).queued_ms(), f64::INFINITY);
     }
 
     #[test]

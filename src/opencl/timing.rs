@@ -20,11 +20,25 @@ struct Pending {
     items: u64,
     /// Whether the planner could have made it shorter.
     divisible: bool,
+    expected_ms: f64,
+}
+
+/// How long to wait for launches in flight.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Wait {
+    /// Not at all.
+    No,
+    /// Until the others are expected to take no longer than this, in milliseconds.
+    UntilBelow(f64),
+    /// For all of them.
+    ForAll,
 }
 
 /// The launches in flight and the sums of those that ended.
 pub(super) struct Timing {
     pending: VecDeque<Pending>,
+    /// What all of `pending` are expected to take, in milliseconds.
+    pending_ms: f64,
     sums: Vec<(&'static str, f64)>,
     /// The stages that were measured before.
     known: Vec<&'static str>,
@@ -35,19 +49,32 @@ pub(super) struct Timing {
 
 impl Timing {
     pub fn new(watchdog_ms: Option<u64>) -> Self {
-        Timing { pending: VecDeque::new(), sums: Vec::new(), known: Vec::new(), watchdog_ms, failure: None }
+        Timing {
+            pending: VecDeque::new(),
+            pending_ms: 0.0,
+            sums: Vec::new(),
+            known: Vec::new(),
+            watchdog_ms,
+            failure: None,
+        }
     }
 
     /// Takes the event of an enqueued launch.
-    pub fn push(&mut self, label: &'static str, event: Handle, items: u64, divisible: bool) {
-        self.pending.push_back(Pending { label, event, items, divisible });
+    pub fn push(&mut self, label: &'static str, event: Handle, items: u64, divisible: bool, expected_ms: f64) {
+        self.pending.push_back(Pending { label, event, items, divisible, expected_ms });
+        self.pending_ms += expected_ms;
     }
 
-    /// Reads the events of launches that ended; waits for all of them if `wait`. A launch that failed on the device is
-    /// an error here, once.
-    pub fn harvest(&mut self, planner: &mut Planner, wait: bool) -> Result<()> {
+    /// Reads the events of launches that ended, and waits for some or all of the others. A launch that failed on the
+    /// device is an error here, once.
+    pub fn harvest(&mut self, planner: &mut Planner, wait: Wait) -> Result<()> {
         while let Some(first) = self.pending.front() {
             let mut status = status(&first.event);
+            let wait = match wait {
+                Wait::No => false,
+                Wait::UntilBelow(ms) => self.pending_ms > ms,
+                Wait::ForAll => true,
+            };
             if wait && matches!(status, Ok(status) if status > 0) {
                 // A failing wait means a failed command: its status, asked again, has the code.
                 let waited = wait_for_events(&[first.event.raw()]);
@@ -62,15 +89,23 @@ impl Timing {
                 Ok(code) | Err(code) => {
                     let call = format!("running `{}`", first.label);
                     self.failure.get_or_insert_with(|| codes::error(call, code));
-                    self.pending.pop_front();
+                    self.pop_first();
                 }
             }
         }
         self.failure.take().map_or(Ok(()), Err)
     }
 
+    fn pop_first(&mut self) -> Option<Pending> {
+        let first = self.pending.pop_front();
+        let rest = self.pending_ms - first.as_ref().map_or(0.0, |first| first.expected_ms);
+        // What is left of many sums and differences is not nothing.
+        self.pending_ms = if self.pending.is_empty() { 0.0 } else { rest };
+        first
+    }
+
     fn read_first(&mut self, planner: &mut Planner) {
-        let Some(done) = self.pending.pop_front() else { return };
+        let Some(done) = self.pop_first() else { return };
         let time = |name| number(get_event_profiling_data(done.event.raw(), name).ok()?);
         // Some drivers answer no times at all; the picture does not depend on them.
         let (Some(start), Some(end)) = (time(CL_PROFILING_COMMAND_START), time(CL_PROFILING_COMMAND_END)) else {

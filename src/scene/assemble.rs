@@ -10,6 +10,7 @@ use super::obj::{MAX_COORDINATE, MISSING, ObjFile};
 use super::triangulate::{self, Split};
 use super::{Object, locate};
 use crate::math::{cross, dot, pack_normal};
+use crate::monitor::Monitor;
 use crate::{Error, Result};
 
 /// How the texture coordinates of a material are moved: `map_Kd` options `-s` and `-o`.
@@ -53,15 +54,21 @@ struct Faces {
     polygons_degenerate: usize,
 }
 
-/// Makes the arrays. `material_of` and `texcoord_maps` are by the file's material number; faces without a material
-/// have `default_material`.
-pub(super) fn assemble(
-    path: &Path,
-    file: ObjFile,
-    material_of: &[u32],
-    texcoord_maps: &[TexcoordMap],
-    default_material: u32,
-) -> Result<Geometry> {
+/// The materials of an OBJ file.
+pub(super) struct FileMaterials<'a> {
+    /// Each one's place among the scene's, by the file's number.
+    pub of: &'a [u32],
+    /// By the file's number.
+    pub maps: &'a [TexcoordMap],
+    /// That of faces without one.
+    pub default: u32,
+}
+
+/// Faces that are added before it is asked whether the work is to end.
+const FACES_AT_ONCE: usize = 4096;
+
+/// Makes the arrays.
+pub(super) fn assemble(path: &Path, file: ObjFile, materials: &FileMaterials, monitor: &Monitor) -> Result<Geometry> {
     let mut geometry = Geometry::default();
     let total: usize = file.models.iter().map(triangles_of).sum();
     let vertices: usize = file.models.iter().map(|m| m.mesh.positions.len() / 3).sum();
@@ -91,13 +98,15 @@ pub(super) fn assemble(
     let mut welder = Welder::default();
     let mut models = file.models.into_iter().peekable();
     while let Some(model) = models.next() {
+        monitor.check()?;
+        monitor.tell(geometry.triangles.len() as f32 / total.max(1) as f32);
         if model.mesh.indices.is_empty() {
             continue;
         }
         let mesh = model.mesh;
         check_numbers(path, &mesh)?;
-        let material = mesh.material_id.map_or(default_material, |id| material_of[id]);
-        let map = mesh.material_id.map_or(TexcoordMap::default(), |id| texcoord_maps[id]);
+        let material = mesh.material_id.map_or(materials.default, |id| materials.of[id]);
+        let map = mesh.material_id.map_or(TexcoordMap::default(), |id| materials.maps[id]);
         let goes_on = models.peek().is_some_and(|next| next.name == model.name);
         let indices = welder.place(&model.name, goes_on, &mesh, &mut geometry.positions);
         let object = *objects.entry((model.name, material)).or_insert_with_key(|(group, material)| {
@@ -107,7 +116,8 @@ pub(super) fn assemble(
             geometry.without_texcoords.push(0);
             (geometry.objects.len() - 1) as u32
         });
-        add_faces(&mut geometry, &mut faces, &mesh, &indices, object, map);
+        let shape = Shape { mesh: &mesh, indices: &indices, object, map };
+        add_faces(&mut geometry, &mut faces, &shape, monitor)?;
     }
     let at = path.display();
     if let Some(first) = faces.first_approximate {
@@ -196,16 +206,29 @@ fn bits(p: Vec3) -> [u32; 3] {
     (p + Vec3::ZERO).to_array().map(f32::to_bits)
 }
 
-fn add_faces(g: &mut Geometry, faces: &mut Faces, mesh: &tobj::Mesh, indices: &[u32], object: u32, map: TexcoordMap) {
+/// Faces of one object and material.
+struct Shape<'a> {
+    mesh: &'a tobj::Mesh,
+    /// Where the mesh's vertices lie in the scene.
+    indices: &'a [u32],
+    object: u32,
+    map: TexcoordMap,
+}
+
+fn add_faces(g: &mut Geometry, faces: &mut Faces, shape: &Shape, monitor: &Monitor) -> Result<()> {
+    let &Shape { mesh, indices, object, .. } = shape;
     let mut corners = Vec::new();
     let mut split = Vec::new();
     let mut first = 0;
     let face_count = if mesh.face_arities.is_empty() { mesh.indices.len() / 3 } else { mesh.face_arities.len() };
     for face in 0..face_count {
+        if face % FACES_AT_ONCE == 0 {
+            monitor.check()?;
+        }
         let arity = mesh.face_arities.get(face).map_or(3, |&n| n as usize);
         let vertices = &mesh.indices[first..first + arity];
         if arity == 3 {
-            add_triangle(g, mesh, indices, object, map, [first, first + 1, first + 2]);
+            add_triangle(g, shape, [first, first + 1, first + 2]);
         } else {
             corners.clear();
             corners.extend(vertices.iter().map(|&v| g.positions[indices[v as usize] as usize]));
@@ -219,15 +242,17 @@ fn add_faces(g: &mut Geometry, faces: &mut Faces, mesh: &tobj::Mesh, indices: &[
                 }
             }
             for t in &split {
-                add_triangle(g, mesh, indices, object, map, t.map(|c| first + c as usize));
+                add_triangle(g, shape, t.map(|c| first + c as usize));
             }
         }
         first += arity;
     }
+    Ok(())
 }
 
 /// Adds one triangle, unless it has no area. `at`: its corners' places in the mesh's index lists.
-fn add_triangle(g: &mut Geometry, mesh: &tobj::Mesh, indices: &[u32], object: u32, map: TexcoordMap, at: [usize; 3]) {
+fn add_triangle(g: &mut Geometry, shape: &Shape, at: [usize; 3]) {
+    let &Shape { mesh, indices, object, map } = shape;
     let triangle = at.map(|c| indices[mesh.indices[c] as usize]);
     let [a, b, c] = triangle.map(|v| g.positions[v as usize]);
     let n = cross(b - a, c - a);

@@ -13,33 +13,39 @@ use super::obj::{self, ObjFile};
 use super::texture::{Role, Textures};
 use super::view::{self, ViewFile};
 use super::{LoadNotes, Material, Scene, Surface, View, normals};
+use crate::monitor::Monitor;
 use crate::{Error, Result};
 
 /// Loads the scene at `path`: a folder with `scene.obj` (and `view.json`), or an OBJ file (`view.json` beside it is
 /// used). Without a view the camera and a light are fitted to the scene, and a warning says so.
 ///
-/// `progress` is told what is being done and which part of the whole is done, from 0 to 1.
+/// `monitor` hears what is being done, and can end it.
 ///
 /// # Errors
 /// Files that cannot be read or make no sense; each message names the file and, where there is one, line or key.
-/// What can be mended or left out is, with a sentence in [`Scene::warnings`].
-pub fn load(path: &Path, progress: &dyn Fn(&str, f32)) -> Result<Scene> {
+/// What can be mended or left out is, with a sentence in [`Scene::warnings`]. [`Error::Cancelled`].
+pub fn load(path: &Path, monitor: &Monitor) -> Result<Scene> {
     let Files { name, obj, view } = find_files(path)?;
     // First the small files: a wrong key should not cost the time of a large mesh.
     let mut view_file = match &view {
         Some(view) => view::read(view)?,
         None => ViewFile::default(),
     };
-    let file = obj::read(&obj, &|part| progress("reading geometry", 0.6 * part))?;
+    monitor.restart();
+    let file = obj::read(&obj, &monitor.part("reading geometry", 0.0, 0.6))?;
     let mut warnings = file.warnings.clone();
     let duplicate_names = file.reopened_groups.clone();
 
-    progress("reading materials", 0.6);
-    let palette = Palette::load(&obj, &file, &view_file, view.as_deref(), &mut warnings)?;
+    let part = monitor.part("reading materials", 0.6, 0.8);
+    let palette = Palette::load(&obj, &file, &view_file, view.as_deref(), &mut warnings, &part)?;
 
-    progress("building triangles", 0.7);
-    let mut geometry =
-        assemble::assemble(&obj, file, &palette.material_of, &palette.texcoord_maps, palette.default_material)?;
+    let part = monitor.part("building triangles", 0.8, 0.9);
+    let materials = assemble::FileMaterials {
+        of: &palette.material_of,
+        maps: &palette.texcoord_maps,
+        default: palette.default_material,
+    };
+    let mut geometry = assemble::assemble(&obj, file, &materials, &part)?;
     warnings.append(&mut geometry.warnings);
     if let Some(expected) = view_file.triangles
         && expected != (geometry.triangles.len() + geometry.dropped) as u64
@@ -48,9 +54,9 @@ pub fn load(path: &Path, progress: &dyn Fn(&str, f32)) -> Result<Scene> {
         warnings.push(format!("{at}: {found} triangles, though view.json says {expected}"));
     }
 
-    progress("computing normals", 0.8);
+    let part = monitor.part("computing normals", 0.9, 1.0);
     let missing = std::mem::take(&mut geometry.corners_without_normal);
-    normals::compute(&geometry.positions, &geometry.triangles, &missing, &mut geometry.corner_normals);
+    normals::compute(&geometry.positions, &geometry.triangles, &missing, &mut geometry.corner_normals, &part)?;
     let notes = LoadNotes {
         triangles_without_normals: missing.iter().filter(|&&m| m != 0).count(),
         triangles_without_texcoords: textured_without_texcoords(&geometry, &palette.materials),
@@ -61,10 +67,10 @@ pub fn load(path: &Path, progress: &dyn Fn(&str, f32)) -> Result<Scene> {
     };
     drop(missing);
 
-    progress("fitting the view", 0.95);
     let place = view.as_ref().map_or_else(|| format!("{} (no view.json)", obj.display()), |v| v.display().to_string());
     let view = make_view(&mut view_file, &geometry, &place, &mut warnings);
-    progress("scene loaded", 1.0);
+    monitor.check()?;
+    part.tell(1.0);
     Ok(Scene {
         name,
         positions: geometry.positions,
@@ -136,13 +142,16 @@ impl Palette {
         view: &ViewFile,
         view_path: Option<&Path>,
         warnings: &mut Vec<String>,
+        monitor: &Monitor,
     ) -> Result<Self> {
         let defined = read_libraries(obj, file, warnings)?;
-        let mut textures = Textures::default();
+        let mut textures = Textures::watched_by(monitor);
         let mut materials = Vec::with_capacity(defined.len() + 1);
         let mut maps = Vec::with_capacity(defined.len() + 1);
         let kinds = Kinds::new(view);
-        for (folder, m) in &defined {
+        for (done, (folder, m)) in defined.iter().enumerate() {
+            monitor.check()?;
+            monitor.tell(done as f32 / defined.len() as f32);
             materials.push(kinds.material(m, folder, &mut textures, warnings)?);
             maps.push(m.diffuse_map.as_ref().map_or(TexcoordMap::default(), |map| map.texcoords));
             if let (Some(colour), Some(mask)) = (&m.diffuse_map, &m.cutout_map)

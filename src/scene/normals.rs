@@ -9,7 +9,9 @@
 
 use glam::Vec3;
 
+use crate::Result;
 use crate::math::{cross, dot, pack_normal};
+use crate::monitor::Monitor;
 
 /// Faces that meet at a larger angle have a visible edge between them.
 pub(super) const CREASE_DEGREES: f32 = 30.0;
@@ -21,14 +23,26 @@ const CREASE_COSINE: f32 = 0.866_025_4;
 /// minutes at the tip of a cone of 100,000 faces.
 const MOST_PAIRED: usize = 128;
 
+/// After so many vertices it is asked whether the work is to end.
+const VERTICES_AT_ONCE: usize = 1024;
+
 /// Cells along each side of the octahedral grid of directions.
 const GRID: usize = 24;
 
 /// Computes the marked corners' normals (bits 0 to 2 of `missing`: the corner has none).
-pub(super) fn compute(positions: &[Vec3], triangles: &[[u32; 3]], missing: &[u8], corner_normals: &mut [[u32; 3]]) {
+///
+/// # Errors
+/// [`crate::Error::Cancelled`].
+pub(super) fn compute(
+    positions: &[Vec3],
+    triangles: &[[u32; 3]],
+    missing: &[u8],
+    corner_normals: &mut [[u32; 3]],
+    monitor: &Monitor,
+) -> Result<()> {
     let wanted = |t: usize| missing[t] != 0;
     if !(0..triangles.len()).any(wanted) {
-        return;
+        return Ok(());
     }
     // Corners by vertex: `first[v]..first[v + 1]` of `corners` (triangle * 3 + corner, ascending).
     let mut first = vec![0u32; positions.len() + 1];
@@ -52,6 +66,10 @@ pub(super) fn compute(positions: &[Vec3], triangles: &[[u32; 3]], missing: &[u8]
 
     let mut around: Vec<Around> = Vec::new();
     for v in 0..positions.len() {
+        if v % VERTICES_AT_ONCE == 0 {
+            monitor.check()?;
+            monitor.tell(v as f32 / positions.len() as f32);
+        }
         let corners = &corners[first[v] as usize..first[v + 1] as usize];
         around.clear();
         around.extend(corners.iter().map(|&c| Around::new(positions, triangles, c)));
@@ -73,6 +91,7 @@ pub(super) fn compute(positions: &[Vec3], triangles: &[[u32; 3]], missing: &[u8]
             corner_normals[t][k] = pack_normal(normal);
         }
     }
+    Ok(())
 }
 
 /// One face at a vertex.
@@ -144,7 +163,7 @@ mod tests {
 
     fn normals_of(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<[Vec3; 3]> {
         let mut packed = vec![[0; 3]; triangles.len()];
-        compute(positions, triangles, &vec![7; triangles.len()], &mut packed);
+        compute(positions, triangles, &vec![7; triangles.len()], &mut packed, &Monitor::default()).unwrap();
         packed.into_iter().map(|c| c.map(unpack_normal)).collect()
     }
 
@@ -229,7 +248,7 @@ mod tests {
     #[test]
     fn corners_that_have_normals_keep_them() {
         let mut packed = vec![[1, 2, 3]];
-        compute(&[Vec3::ZERO, Vec3::X, Vec3::Y], &[[0, 1, 2]], &[0b010], &mut packed);
+        compute(&[Vec3::ZERO, Vec3::X, Vec3::Y], &[[0, 1, 2]], &[0b010], &mut packed, &Monitor::default()).unwrap();
         assert_eq!((packed[0][0], packed[0][2]), (1, 3));
         assert_eq!(unpack_normal(packed[0][1]), Vec3::Z);
     }

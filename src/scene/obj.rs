@@ -18,6 +18,7 @@ use std::path::Path;
 
 use super::lines::{LogicalLines, keyword, name_text, without_comment, words};
 use super::locate;
+use crate::monitor::Monitor;
 use crate::{Error, Result};
 
 /// What stands for "the file has none" in the lists of texture coordinates and normals.
@@ -46,9 +47,9 @@ pub(super) struct ObjFile {
     pub warnings: Vec<String>,
 }
 
-/// Reads the OBJ file at `path`. `progress` hears the part of the file that has been read.
-pub(super) fn read(path: &Path, progress: &dyn Fn(f32)) -> Result<ObjFile> {
-    let mut feed = Feed::new(LogicalLines::open(path)?, progress);
+/// Reads the OBJ file at `path`.
+pub(super) fn read(path: &Path, monitor: &Monitor) -> Result<ObjFile> {
+    let mut feed = Feed::new(LogicalLines::open(path)?, monitor);
     let define = |name: &Path| {
         let name = name.display().to_string();
         let material = tobj::Material { name: name.clone(), ..Default::default() };
@@ -110,8 +111,7 @@ struct Defined {
 /// The reader that `tobj` reads from.
 struct Feed<'a> {
     lines: LogicalLines,
-    progress: &'a dyn Fn(f32),
-    told: f32,
+    monitor: &'a Monitor,
     /// Plain OBJ text, handed out from `at` on.
     ready: Vec<u8>,
     at: usize,
@@ -141,11 +141,10 @@ enum Step {
 }
 
 impl<'a> Feed<'a> {
-    fn new(lines: LogicalLines, progress: &'a dyn Fn(f32)) -> Self {
+    fn new(lines: LogicalLines, monitor: &'a Monitor) -> Self {
         let mut feed = Feed {
             lines,
-            progress,
-            told: 0.0,
+            monitor,
             ready: Vec::with_capacity(READY_BYTES * 2),
             at: 0,
             error: None,
@@ -265,16 +264,13 @@ impl<'a> Feed<'a> {
     fn refill(&mut self) -> Result<()> {
         self.ready.drain(..self.at);
         self.at = 0;
+        self.monitor.check()?;
         while self.ready.len() < READY_BYTES {
             if let Step::End = self.step()? {
                 break;
             }
         }
-        let fraction = self.lines.fraction_read();
-        if fraction - self.told >= 0.01 {
-            self.told = fraction;
-            (self.progress)(fraction);
-        }
+        self.monitor.tell(self.lines.fraction_read());
         Ok(())
     }
 

@@ -3,12 +3,13 @@
 
 use std::collections::HashMap;
 use std::fs::File;
-use std::io::{BufReader, Cursor, Read};
+use std::io::{self, BufReader, Cursor, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 use image::{ImageFormat, ImageReader, Limits};
 
 use super::Texture;
+use crate::monitor::Monitor;
 use crate::{Error, Result};
 
 /// Most texels along a side.
@@ -38,9 +39,15 @@ pub(super) struct Textures {
     pub warnings: Vec<String>,
     known: HashMap<(PathBuf, Role), Option<u32>>,
     total_bytes: u64,
+    monitor: Monitor,
 }
 
 impl Textures {
+    /// No textures yet; loading ends when `monitor` says so.
+    pub(super) fn watched_by(monitor: &Monitor) -> Self {
+        Textures { monitor: monitor.clone(), ..Textures::default() }
+    }
+
     /// The index of the texture in `folder/name`; `None` and a warning if there is no such picture.
     pub(super) fn load(&mut self, folder: &Path, name: &str, role: Role) -> Result<Option<u32>> {
         let path = find(folder, name);
@@ -90,17 +97,19 @@ impl Textures {
     /// Decodes a picture; `None` if it is of another format.
     fn decode(&mut self, path: &Path, name: &str, role: Role) -> Result<Option<Texture>> {
         let fail = |message: String| Error::Image { path: path.to_path_buf(), message };
-        let io = |e| Error::io(path, e);
+        let at_path = |e| Error::io(path, e);
         let mut head = [0u8; 32];
-        let length = read_head(path, &mut head).map_err(io)?;
+        let length = read_head(path, &mut head).map_err(at_path)?;
         let head = &head[..length];
         let format = match image::guess_format(head) {
             Ok(format @ (ImageFormat::Png | ImageFormat::Jpeg)) => format,
             _ if length == 0 => return Err(fail("file is empty; not a PNG or JPEG picture".into())),
             _ => return Ok(None),
         };
-        let open = || -> std::io::Result<_> {
-            let mut reader = ImageReader::with_format(BufReader::new(File::open(path)?), format);
+        let monitor = self.monitor.clone();
+        let open = || -> io::Result<_> {
+            let file = Watched { file: File::open(path)?, monitor: &monitor };
+            let mut reader = ImageReader::with_format(BufReader::new(file), format);
             // Sizes are ours to check, with the numbers in the message.
             let mut limits = Limits::no_limits();
             limits.max_alloc = Some(DECODER_BYTES);
@@ -115,10 +124,13 @@ impl Textures {
         // The PNG decoder refuses absurd sizes without naming them.
         let size = match (format, png_size(head)) {
             (ImageFormat::Png, Some(size)) => size,
-            _ => open().map_err(io)?.into_dimensions().map_err(broken)?,
+            _ => open().map_err(at_path)?.into_dimensions().map_err(broken)?,
         };
+        monitor.check()?;
         self.reserve(path, size)?;
-        let picture = open().map_err(io)?.decode().map_err(broken)?;
+        let decoded = open().map_err(at_path)?.decode();
+        monitor.check()?;
+        let picture = decoded.map_err(broken)?;
         let has_alpha = picture.color().has_alpha();
         let picture = picture.into_rgba8();
         let (width, height) = picture.dimensions();
@@ -165,12 +177,31 @@ impl Textures {
     }
 }
 
+/// A file that cannot be read any more once the work is cancelled: that is how a decoder is stopped.
+struct Watched<'a> {
+    file: File,
+    monitor: &'a Monitor,
+}
+
+impl Read for Watched<'_> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        self.monitor.check().map_err(io::Error::other)?;
+        self.file.read(buffer)
+    }
+}
+
+impl Seek for Watched<'_> {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        self.file.seek(to)
+    }
+}
+
 /// The file, as written or with slashes for backslashes.
 fn find(folder: &Path, name: &str) -> Option<PathBuf> {
     [folder.join(name), folder.join(name.replace('\\', "/"))].into_iter().find(|p| p.is_file())
 }
 
-fn read_head(path: &Path, head: &mut [u8]) -> std::io::Result<usize> {
+fn read_head(path: &Path, head: &mut [u8]) -> io::Result<usize> {
     let mut bytes = Vec::new();
     File::open(path)?.take(head.len() as u64).read_to_end(&mut bytes)?;
     Cursor::new(&bytes).read_exact(&mut head[..bytes.len()])?;

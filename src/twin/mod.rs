@@ -25,12 +25,16 @@ mod step4;
 pub mod trace;
 pub mod traverse;
 
+use std::sync::atomic::{AtomicU32, Ordering};
+
 use rayon::prelude::*;
 
 pub use planes::Words;
 pub use scene_args::SceneArgs;
 
+use crate::error::Result;
 use crate::layout::StepParams;
+use crate::monitor::Monitor;
 use crate::stage::{Items, Kernel};
 
 /// The buffers of a frame.
@@ -50,8 +54,21 @@ pub struct FrameBuffers {
     pub sums: Words,
 }
 
+/// Work-items that a thread runs before it asks whether the launch is to end.
+const ITEMS_AT_ONCE: u32 = 16;
+
 /// Launches `kernel`: runs its twin for every work-item.
-pub fn run(kernel: Kernel, scene: &SceneArgs, step: &StepParams, buffers: &FrameBuffers) {
+///
+/// # Errors
+/// [`crate::Error::Cancelled`]: the buffers hold anything then.
+pub fn run(
+    kernel: Kernel,
+    scene: &SceneArgs,
+    step: &StepParams,
+    buffers: &FrameBuffers,
+    monitor: &Monitor,
+) -> Result<()> {
+    let cancelled = || monitor.cancel().is_cancelled();
     match kernel.items() {
         Items::Grid => {
             let item = match kernel {
@@ -60,10 +77,16 @@ pub fn run(kernel: Kernel, scene: &SceneArgs, step: &StepParams, buffers: &Frame
                 Kernel::Step3a => step3a::step3a,
                 _ => unreachable!("kernels over a grid are listed above"),
             };
+            let rows_done = AtomicU32::new(0);
             (0..step.grid_height).into_par_iter().for_each(|gy| {
                 for gx in 0..step.grid_width {
+                    if gx % ITEMS_AT_ONCE == 0 && cancelled() {
+                        return;
+                    }
                     item(scene, step, gx, gy, buffers);
                 }
+                let done = rows_done.fetch_add(1, Ordering::Relaxed) + 1;
+                monitor.tell(done as f32 / step.grid_height as f32);
             });
         }
         Items::OneGroup => step4::step4_tail(scene, step, buffers),
@@ -73,9 +96,15 @@ pub fn run(kernel: Kernel, scene: &SceneArgs, step: &StepParams, buffers: &Frame
                 Items::Groups => step.item_count.div_ceil(step.scan_group),
                 _ => step.item_count,
             };
-            (0..count).into_par_iter().with_min_len(16).for_each(|i| item_1d(kernel, scene, step, i, buffers));
+            // Lists are cut into equal parts, of which the threads begin many before one ends: no share is told.
+            (0..count).into_par_iter().with_min_len(ITEMS_AT_ONCE as usize).for_each(|i| {
+                if !cancelled() {
+                    item_1d(kernel, scene, step, i, buffers);
+                }
+            });
         }
     }
+    monitor.check()
 }
 
 /// One work-item (or group) of a one-dimensional kernel. Exhaustive: a kernel without a twin does not compile.

@@ -9,8 +9,10 @@ use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 use glam::Vec3;
 
 use super::scene_args::{Work, xyz};
+use crate::error::Result;
 use crate::layout::*;
 use crate::math::{clamp, dot, pack_normal, pack_texcoord, unpack_normal, unpack_texcoord};
+use crate::monitor::Monitor;
 
 /// A buffer of 32-bit words that items on any thread may read and write.
 #[derive(Debug, Default)]
@@ -20,6 +22,21 @@ impl Words {
     /// A buffer of zeros.
     pub fn zeroed(len: usize) -> Self {
         Words(std::iter::repeat_with(AtomicU32::default).take(len).collect())
+    }
+
+    /// A buffer of zeros. It takes a while to make a large one.
+    ///
+    /// # Errors
+    /// [`crate::Error::Cancelled`].
+    pub fn zeroed_unless_cancelled(len: usize, monitor: &Monitor) -> Result<Self> {
+        const AT_ONCE: usize = 4 << 20;
+        let mut words = Vec::new();
+        words.reserve_exact(len);
+        while words.len() < len {
+            monitor.check()?;
+            words.resize_with(len.min(words.len() + AT_ONCE), AtomicU32::default);
+        }
+        Ok(Words(words))
     }
 
     /// A buffer with the given contents.

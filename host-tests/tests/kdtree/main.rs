@@ -5,16 +5,20 @@
 mod meshes;
 mod rays;
 
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::{Arc, Mutex};
+
 use glam::Vec3;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngSeed};
 use rarefy::Error;
 use rarefy::kdtree::{BuildOptions, KdNode, KdTree, MAX_BYTES_PER_TRIANGLE, MAX_DEPTH};
+use rarefy::monitor::{Cancel, Event, Monitor};
 
 use meshes::{Mesh, awkward_meshes, flat_grid, joined, positions_and_faces, random_soup, soup, sphere};
 
 fn build(mesh: &Mesh, options: &BuildOptions) -> KdTree {
-    KdTree::build(&mesh.0, &mesh.1, options, &|_| {}).unwrap()
+    KdTree::build(&mesh.0, &mesh.1, options, &rarefy::Monitor::default()).unwrap()
 }
 
 fn built_well(mesh: &Mesh, options: &BuildOptions) -> KdTree {
@@ -75,13 +79,51 @@ fn any_number_of_threads_gives_the_same_bytes() {
 #[test]
 fn progress_runs_from_zero_to_one_and_never_back() {
     let mesh = random_soup(7, 20_000, 0.03);
-    let seen = std::sync::Mutex::new(Vec::new());
+    let seen = Arc::new(Mutex::new(Vec::new()));
+    let log = Arc::clone(&seen);
+    let monitor = Monitor::new(move |event| {
+        if let Event::Progress { phase, share } = event {
+            assert_eq!(phase, "kd-tree");
+            log.lock().unwrap().push(share);
+        }
+    });
     let options = BuildOptions { threads: Some(3), ..BuildOptions::default() };
-    KdTree::build(&mesh.0, &mesh.1, &options, &|share| seen.lock().unwrap().push(share)).unwrap();
-    let seen = seen.into_inner().unwrap();
+    KdTree::build(&mesh.0, &mesh.1, &options, &monitor).unwrap();
+    let seen = seen.lock().unwrap();
     assert_eq!((seen[0], seen[seen.len() - 1]), (0.0, 1.0));
     assert!(seen.len() > 5, "only {} reports", seen.len());
     assert!(seen.is_sorted());
+}
+
+/// Cancels at each report in turn: whatever has grown by then, there is no tree, and no panic.
+#[test]
+fn a_tree_can_be_cancelled_at_any_report() {
+    let mesh = random_soup(7, 20_000, 0.03);
+    let mut cancelled = 0;
+    for threads in [Some(1), Some(3)] {
+        for cancel_at in (0..).step_by(2) {
+            let cancel = Cancel::default();
+            let (token, heard) = (cancel.clone(), Arc::new(AtomicU32::new(0)));
+            let count = Arc::clone(&heard);
+            let monitor = Monitor::new(move |_| {
+                if count.fetch_add(1, Ordering::Relaxed) == cancel_at {
+                    token.cancel();
+                }
+            });
+            let options = BuildOptions { threads, ..BuildOptions::default() };
+            let built = KdTree::build(&mesh.0, &mesh.1, &options, &monitor.with_cancel(&cancel));
+            if heard.load(Ordering::Relaxed) <= cancel_at {
+                assert!(built.unwrap().nodes == build(&mesh, &options).nodes);
+                break;
+            }
+            // The last report says that all is done: too late to cancel.
+            if let Err(error) = built {
+                assert!(matches!(error, Error::Cancelled), "{error}");
+                cancelled += 1;
+            }
+        }
+    }
+    assert!(cancelled > 10, "cancelled only {cancelled} times");
 }
 
 #[test]
@@ -161,7 +203,7 @@ fn memory_limits_hold() {
         }
     }
     let options = BuildOptions { memory_limit_bytes: least - 1, ..BuildOptions::default() };
-    let error = KdTree::build(&mesh.0, &mesh.1, &options, &|_| {}).unwrap_err();
+    let error = KdTree::build(&mesh.0, &mesh.1, &options, &rarefy::Monitor::default()).unwrap_err();
     assert!(matches!(error, Error::LimitExceeded { .. }));
     let message = error.to_string();
     assert!(message.contains("12416") && message.contains("12415"), "no numbers in: {message}");
@@ -181,7 +223,7 @@ fn bad_options_are_refused() {
         BuildOptions { max_depth: Some(MAX_DEPTH + 1), ..good.clone() },
         BuildOptions { threads: Some(0), ..good.clone() },
     ] {
-        let error = KdTree::build(&mesh.0, &mesh.1, &options, &|_| {}).unwrap_err();
+        let error = KdTree::build(&mesh.0, &mesh.1, &options, &rarefy::Monitor::default()).unwrap_err();
         assert!(matches!(error, Error::InvalidOption { .. }), "{options:?}: {error}");
     }
 }
@@ -195,7 +237,9 @@ fn bad_triangles_are_refused() {
         (vec![Vec3::ZERO, Vec3::X, Vec3::new(0.0, 0.0, f32::INFINITY)], [0, 1, 2]),
         (vec![Vec3::ZERO, Vec3::X, Vec3::new(0.0, -2e12, 0.0)], [0, 1, 2]),
     ] {
-        let error = KdTree::build(&positions, &[[0, 1, 0], triangle], &BuildOptions::default(), &|_| {}).unwrap_err();
+        let error =
+            KdTree::build(&positions, &[[0, 1, 0], triangle], &BuildOptions::default(), &rarefy::Monitor::default())
+                .unwrap_err();
         assert!(matches!(error, Error::InvalidScene { .. }), "{error}");
         assert!(error.to_string().contains("triangle 1"), "no place in: {error}");
     }
