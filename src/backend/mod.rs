@@ -7,7 +7,7 @@ pub mod recording;
 pub mod twin;
 
 use crate::error::Result;
-use crate::layout::{COUNTER_COUNT, FrameParams, PLANE_COUNT, StepParams, TAIL_ROUNDS, TAIL_SUM_ENDS};
+use crate::layout::{COUNTER_COUNT, FrameParams, PLANE_COUNT, StepParams, TAIL_ROUNDS, TAIL_SUM_ENDS, Traversal};
 use crate::stage::Kernel;
 
 /// What the statistics say about the device of a frame.
@@ -106,6 +106,11 @@ pub trait Backend {
 
     /// What its memory holds, the profile's limits included.
     fn memory_limits(&self) -> MemoryLimits;
+
+    /// How its rays walk through the kd-tree: what the counted steps depend on.
+    fn traversal(&self) -> Traversal {
+        Traversal::default()
+    }
 
     /// Makes ready for a frame or a window of it: buffers of these sizes and the parameters.
     ///

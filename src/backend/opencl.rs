@@ -7,7 +7,7 @@ use std::sync::Arc;
 use super::{Backend, BackendInfo, BufferSizes, FrameBuffer, MemoryLimits};
 use crate::error::Result;
 use crate::kernels::{self, Mutation};
-use crate::layout::{self, BuildFlavour, FrameParams, StepParams};
+use crate::layout::{self, BuildFlavour, FrameParams, StepParams, Traversal};
 use crate::opencl::{AnyBuffer, Arg, Buffer, Door, Kernel as DeviceKernel, Launch, Limits, ProgramSource};
 use crate::profiles::Choices;
 use crate::scene_buffers::{SceneBuffers, Shading};
@@ -92,12 +92,13 @@ impl OpenClBackend {
     pub fn new(door: Door, scene: &Arc<SceneBuffers>, strict: bool) -> Result<Self> {
         let on_device = SceneOnDevice::upload(&door, scene)?;
         let scan_group = scan_group(door.limits());
+        let (anchor, traversal) = (scene.shading == Shading::Anchor, door.choices().traversal());
         Ok(OpenClBackend {
             door,
             scene: on_device,
             buffers: None,
             kernels: HashMap::new(),
-            flavour: BuildFlavour { strict, count: false, anchor: scene.shading == Shading::Anchor },
+            flavour: BuildFlavour { strict, count: false, anchor, traversal },
             mutation: None,
             scan_group,
             program_ms: 0.0,
@@ -227,6 +228,10 @@ impl Backend for OpenClBackend {
 
     fn scan_group(&self) -> u32 {
         self.scan_group
+    }
+
+    fn traversal(&self) -> Traversal {
+        self.flavour.traversal
     }
 
     fn memory_limits(&self) -> MemoryLimits {

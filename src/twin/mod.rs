@@ -22,6 +22,8 @@ mod step3c;
 mod step4;
 pub mod trace;
 pub mod traverse;
+mod walk_short;
+mod walk_stack;
 
 use rayon::prelude::*;
 
