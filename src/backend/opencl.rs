@@ -93,7 +93,7 @@ impl OpenClBackend {
         let on_device = SceneOnDevice::upload(&door, scene)?;
         let scan_group = scan_group(door.limits());
         let (anchor, traversal) = (scene.shading == Shading::Anchor, door.choices().traversal());
-        Ok(OpenClBackend {
+        let mut backend = OpenClBackend {
             door,
             scene: on_device,
             buffers: None,
@@ -102,7 +102,21 @@ impl OpenClBackend {
             mutation: None,
             scan_group,
             program_ms: 0.0,
-        })
+        };
+        backend.fit_scans();
+        Ok(backend)
+    }
+
+    /// Lowers the work-group of scans to what the driver allows their kernel, which it says once that is built.
+    fn fit_scans(&mut self) {
+        let scan = Kernel::Step2bScan;
+        // What forbids the program is told when a frame wants it.
+        if self.build(scan).is_ok()
+            && let Some(kernel) = self.kernels.get(&(scan, self.flavour))
+        {
+            let [fitted, _] = self.door.fit_work_group(kernel, [self.scan_group as usize, 1], true);
+            self.scan_group = fitted.max(2) as u32;
+        }
     }
 
     /// Breaks the kernels on purpose: for tests, and for the self-test's negative control.
