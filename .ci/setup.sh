@@ -5,7 +5,7 @@
 #
 #   . .ci/setup.sh run    Rust, and PoCL to run the kernels on the CPU
 #   . .ci/setup.sh test   also a JDK, and clang to check kernels as strict OpenCL C 1.2
-#   . .ci/setup.sh long   also oclgrind
+#   . .ci/setup.sh long   also oclgrind and Mesa's OpenCL
 #
 # Rust is required. The rest is as good as it can be got: a test whose tool is missing fails and says what it needs.
 # Sets `opencl` to yes or no: whether there is an OpenCL loader with a driver.
@@ -33,6 +33,7 @@ if [ "$1" = test ] || [ "$1" = long ]; then
         say "without clang the strict check of the kernels fails; RAREFY_TEST_CLANG=none waives it" >&2
 fi
 if [ "$1" = long ]; then
-    # oclgrind finds data races and uninitialised reads in kernels; it needs the headers of its own clang.
+    # oclgrind finds data races and uninitialised reads in kernels; it needs the headers of its own clang. Mesa has rusticl.
     need_packages "the long tests of the kernels" oclgrind clang || true
+    need_packages "the long tests under rusticl" mesa-opencl-icd || true
 fi

@@ -10,6 +10,8 @@ use crate::stage::Stage;
 pub const FILES: &[(&str, &str)] = &[
     ("types.h", include_str!("../kernels/types.h")),
     ("common/math.clh", include_str!("../kernels/common/math.clh")),
+    ("common/walk_stack.clh", include_str!("../kernels/common/walk_stack.clh")),
+    ("common/walk_short.clh", include_str!("../kernels/common/walk_short.clh")),
     ("common/kdtree.clh", include_str!("../kernels/common/kdtree.clh")),
     ("common/shade.clh", include_str!("../kernels/common/shade.clh")),
     ("common/attributes.clh", include_str!("../kernels/common/attributes.clh")),

@@ -184,17 +184,24 @@ fn flatten_material(m: &crate::scene::Material, anchor: bool) -> layout::Materia
     }
 }
 
+/// Offsets have 32 bits, and a vector at most half of the address space, whose last byte is `last_address`.
+fn check_texels(name: &str, total: u64, last_address: u64) -> Result<()> {
+    let most = (1u64 << 30).min(last_address / 8);
+    if total < most {
+        return Ok(());
+    }
+    Err(Error::LimitExceeded {
+        what: format!("the textures of {name}"),
+        limit: "texels".into(),
+        wanted: format!("{total} texels"),
+        allowed: format!("{} texels", most - 1),
+        remedy: "use smaller textures".into(),
+    })
+}
+
 fn flatten_textures(scene: &Scene) -> Result<(Vec<layout::Texture>, Vec<u32>)> {
     let total: u64 = scene.textures.iter().map(|t| t.texels.len() as u64).sum();
-    if total >= 1 << 30 {
-        return Err(Error::LimitExceeded {
-            what: format!("the textures of {}", scene.name),
-            limit: "texels".into(),
-            wanted: format!("{total} texels"),
-            allowed: format!("{} texels", 1u32 << 30),
-            remedy: "use smaller textures".into(),
-        });
-    }
+    check_texels(&scene.name, total, usize::MAX as u64)?;
     let mut textures = Vec::with_capacity(scene.textures.len().max(1));
     let mut texels = Vec::with_capacity(total as usize);
     for t in &scene.textures {
@@ -206,4 +213,22 @@ fn flatten_textures(scene: &Scene) -> Result<(Vec<layout::Texture>, Vec<u32>)> {
         texels.push(0xffff_ffff);
     }
     Ok((textures, texels))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn texels_fit_offsets_and_the_address_space() {
+        let (bits32, bits64) = (u64::from(u32::MAX), u64::MAX);
+        for (last_address, most) in [(bits64, (1u64 << 30) - 1), (bits32, (1 << 29) - 2)] {
+            assert!(check_texels("t", most, last_address).is_ok());
+            assert!(4 * most <= last_address / 2, "a vector of {most} texels");
+            for total in [most + 1, 1 << 32, u64::MAX] {
+                let message = check_texels("t", total, last_address).unwrap_err().to_string();
+                assert!(message.contains(&format!("allows {most} texels")), "{message}");
+            }
+        }
+    }
 }

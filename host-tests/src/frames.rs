@@ -13,7 +13,7 @@ use rarefy::camera::frame_params;
 use rarefy::frame::Keep;
 use rarefy::kdtree::{BuildOptions, KdTree};
 use rarefy::layout::*;
-use rarefy::opencl::{OpenOptions, open_with};
+use rarefy::opencl::{OpenOptions, Profile, open_with};
 use rarefy::options::{Mode, RenderOptions};
 use rarefy::pipeline::{self, PixelCounts};
 use rarefy::scene::{Object, Surface, Texture};
@@ -30,6 +30,15 @@ pub fn no_opencl() -> bool {
         println!("skipped: {WITHOUT_OPENCL}=none");
     }
     none
+}
+
+/// Opens a device whose kernels walk through the tree by `traversal`, whatever its type.
+pub fn walking_by(traversal: Traversal) -> OpenOptions {
+    let word = traversal.name();
+    let text = format!(
+        r#"{{"limits":{{}},"choices":{{"traversal":{{"value":"{word}","certainty":"inferred","source":"test"}}}}}}"#
+    );
+    OpenOptions { profile: Some(Profile::from_json(word, &text).unwrap()), ..OpenOptions::default() }
 }
 
 /// A scene with its buffers.

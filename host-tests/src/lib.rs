@@ -2,6 +2,7 @@
 //! Fixtures and assertions that the desktop tests share.
 #![allow(clippy::unwrap_used)]
 
+pub mod clang;
 pub mod command;
 pub mod doors;
 pub mod fixtures;

@@ -4,59 +4,23 @@
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::PathBuf;
-use std::process::Command;
 
 use rarefy::kernels::{FILES, assemble};
-use rarefy::layout::{BuildFlavour, build_options};
+use rarefy::layout::{BuildFlavour, Traversal, build_options};
+use rarefy_host_tests::clang::{check, clang};
 use rarefy_host_tests::command::root;
 
-/// Without clang these tests fail, unless this variable says `none`.
-const WITHOUT: &str = "RAREFY_TEST_CLANG";
-
-/// A clang that knows the target of the gate.
-fn clang() -> Option<&'static str> {
-    if std::env::var(WITHOUT).is_ok_and(|value| value == "none") {
-        println!("skipped: {WITHOUT}=none");
-        return None;
-    }
-    let runs = |name: &&str| Command::new(name).arg("--version").output().is_ok_and(|o| o.status.success());
-    let found = ["clang-14", "clang-15", "clang-16", "clang"].into_iter().find(runs);
-    Some(
-        found.unwrap_or_else(|| panic!("no clang here: install it (`apt-get install clang-14`) or set {WITHOUT}=none")),
-    )
-}
-
-/// Compiles `file`; `Err` is what the compiler said.
-fn compile(clang: &str, file: &std::path::Path, options: &str) -> Result<(), String> {
-    // spir: 32-bit sizes as on the phone. Of all extensions only those that OpenCL 1.2 has in its core.
-    let output = Command::new(clang)
-        .current_dir(root())
-        .args("-x cl -cl-std=CL1.2 --target=spir-unknown-unknown -Xclang -finclude-default-header".split(' '))
-        .arg("-Xclang")
-        .arg(
-            "-cl-ext=-all,+cl_khr_global_int32_base_atomics,+cl_khr_local_int32_base_atomics,\
-             +cl_khr_byte_addressable_store",
-        )
-        .args("-Werror -Wall -Wextra -Wdouble-promotion -Wno-unused-function -Wno-gnu".split(' '))
-        // Every function takes the whole scene, so that argument lists are alike.
-        .arg("-Wno-unused-parameter")
-        .args("-fsyntax-only -Ikernels".split(' '))
-        .args(options.split(' '))
-        .arg(file)
-        .output()
-        .unwrap();
-    if output.status.success() { Ok(()) } else { Err(String::from_utf8_lossy(&output.stderr).into_owned()) }
-}
-
-fn flavours() -> [BuildFlavour; 5] {
-    let of = |strict, count, anchor| BuildFlavour { strict, count, anchor };
+fn flavours() -> [BuildFlavour; 7] {
+    let of = |strict, count, anchor| BuildFlavour { strict, count, anchor, ..BuildFlavour::default() };
+    let walking_by = |traversal| BuildFlavour { traversal, ..of(true, true, false) };
     [
         of(false, false, false),
         of(true, false, false),
         of(false, true, false),
         of(false, false, true),
         of(true, true, true),
+        walking_by(Traversal::ShortStack),
+        walking_by(Traversal::Stackless),
     ]
 }
 
@@ -85,7 +49,7 @@ fn every_kernel_passes_the_strict_compiler_in_every_flavour() {
     for name in programs() {
         for flavour in flavours() {
             let options = build_options(flavour);
-            let result = compile(clang, &PathBuf::from("kernels").join(name), &options);
+            let result = check(clang, &root().join("kernels").join(name), &options);
             assert!(result.is_ok(), "kernels/{name}, {flavour:?}: {}", result.unwrap_err());
         }
     }
@@ -100,7 +64,7 @@ fn the_gate_refuses_what_phones_refuse() {
     let try_it = |body: &str| {
         std::fs::write(&path, format!("#include \"types.h\"\n__kernel void k(__global float *out) {{ {body} }}\n"))
             .unwrap();
-        compile(clang, &path, &options)
+        check(clang, &path, &options)
     };
     try_it("out[0] = 1.0f;").unwrap();
     for bad in [

@@ -10,12 +10,13 @@ use std::path::Path;
 
 use rarefy::backend::parity::{KernelParity, ParityBackend};
 use rarefy::kernels::{FILES, Mutation};
+use rarefy::layout::Traversal;
 use rarefy::opencl::{CacheFolder, OpenOptions};
 use rarefy::options::{CorrectionMethod, RenderOptions};
 use rarefy::renderer::RendererOptions;
 use rarefy::selftest;
 use rarefy::stage::{Kernel, Stage};
-use rarefy_host_tests::frames::{Prepared, no_opencl};
+use rarefy_host_tests::frames::{Prepared, no_opencl, walking_by};
 
 /// The frame that a mutant is drawn in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -40,12 +41,16 @@ enum Shot {
     Strictest,
     /// [`Shot::Room`] by the paper's rules.
     Paper,
+    /// [`Shot::Zoo`], smaller, walked with a short stack.
+    ZooShort,
+    /// [`Shot::ZooShort`] without any stack.
+    ZooStackless,
 }
 
 impl Shot {
     fn scene(self) -> &'static str {
         match self {
-            Shot::Zoo | Shot::Strictest => "zoo",
+            Shot::Zoo | Shot::Strictest | Shot::ZooShort | Shot::ZooStackless => "zoo",
             Shot::Room | Shot::Paper => "mirror-room",
             Shot::Rods | Shot::RodsSwept | Shot::RodsInBands | Shot::Large => "rods",
             Shot::Dashes | Shot::DashesInBands => "dashes",
@@ -61,7 +66,7 @@ impl Shot {
             // Large enough that smooth glass, slopes and faint shadows are interpolated too.
             Shot::Zoo => (options.width, options.height, options.depth) = (180, 136, 3),
             Shot::Dashes | Shot::DashesInBands => (options.width, options.height) = (64, 64),
-            Shot::Room => {}
+            Shot::Room | Shot::ZooShort | Shot::ZooStackless => {}
             Shot::Paper => options = RenderOptions { width: 50, height: 38, ..RenderOptions::paper() },
         }
         if matches!(self, Shot::RodsInBands | Shot::DashesInBands) {
@@ -74,7 +79,15 @@ impl Shot {
     }
 
     fn counters(self) -> bool {
-        matches!(self, Shot::Zoo | Shot::Room | Shot::Strictest)
+        matches!(self, Shot::Zoo | Shot::Room | Shot::Strictest | Shot::ZooShort | Shot::ZooStackless)
+    }
+
+    fn traversal(self) -> Traversal {
+        match self {
+            Shot::ZooShort => Traversal::ShortStack,
+            Shot::ZooStackless => Traversal::Stackless,
+            _ => Traversal::PrivateStack,
+        }
     }
 }
 
@@ -181,8 +194,8 @@ const KNOWN_SHADOWS: &[Mutant] = &[
 const TRAVERSAL: &[Mutant] = &[
     ("common/kdtree.clh", "#define WIDEN_UP 1.0000005f", "#define WIDEN_UP 0.9f", Shot::Room, Kernel::Step1),
     ("common/kdtree.clh", "#define WIDEN_DOWN 0.9999995f", "#define WIDEN_DOWN 1.1f", Shot::Room, Kernel::Step1),
-    ("common/kdtree.clh", "| side[axis]", "| (side[axis] ^ 2u)", Shot::Zoo, Kernel::Step1),
-    ("common/kdtree.clh", "if (depth == 0u || best.t < t_min)", "if (depth == 0u)", Shot::Zoo, Kernel::Step1),
+    ("common/walk_stack.clh", "| side[axis]", "| (side[axis] ^ 2u)", Shot::Zoo, Kernel::Step1),
+    ("common/kdtree.clh", "if (best.t < t_min) return best;", "", Shot::Zoo, Kernel::Step1),
     ("common/kdtree.clh", "id < best.triangle", "id > best.triangle", Shot::Zoo, Kernel::Step1),
     ("common/kdtree.clh", "fabs(us + vs) <= fabs(det)", "fabs(us + vs) <= 1.1f * fabs(det)", Shot::Room, Kernel::Step1),
     ("common/kdtree.clh", ">> 24) < 128u", ">> 24) >= 128u", Shot::Zoo, Kernel::Step1),
@@ -192,6 +205,25 @@ const TRAVERSAL: &[Mutant] = &[
     ("common/kdtree.clh", "t < t_limit", "t < 2.0f * t_limit", Shot::Room, Kernel::Step1),
     ("common/trace.clh", "COUNT(shadow_rays)", "COUNT(refraction_rays)", Shot::Zoo, Kernel::Step1),
     ("common/attributes.clh", "] = work->triangle_tests", "] = work->traversal_steps", Shot::Zoo, Kernel::Step1),
+];
+
+/// The walk without arrays.
+#[rustfmt::skip]
+const SHORT_WALK: &[Mutant] = &[
+    ("common/walk_short.clh", "(inv_y < 0.0f ? 4u : 0u)", "(inv_y < 0.0f ? 8u : 0u)", Shot::ZooShort, Kernel::Step1),
+    ("common/walk_short.clh", "axis == 1u ? y : z", "axis == 1u ? z : y", Shot::ZooShort, Kernel::Step1),
+    ("common/walk_short.clh", "((sides >> axis) & 2u)", "((~sides >> axis) & 2u)", Shot::ZooShort, Kernel::Step1),
+    ("common/walk_short.clh", "const bool again = level < replay;", "const bool again = level <= replay;", Shot::ZooShort, Kernel::Step1),
+    ("common/walk_short.clh", "again ? !IS_WAITING(level) : t_split < t_min", "t_split < t_min", Shot::ZooStackless, Kernel::Step1),
+    ("common/walk_short.clh", "if (!again) FLIP_WAITING(level)", "if (!again && level < 9u) FLIP_WAITING(level)", Shot::ZooShort, Kernel::Step1),
+    ("common/walk_short.clh", "t_max = t_split * WIDEN_UP;", "t_max = again ? t_max : t_split * WIDEN_UP;", Shot::ZooStackless, Kernel::Step1),
+    ("common/walk_short.clh", "exit_b = exit_a, exit_a = t_max;", "exit_b = exit_a, exit_a = t_exit;", Shot::ZooShort, Kernel::Step1),
+    ("common/walk_short.clh", "held = min(held + 1u, 4u);", "held = min(held + 1u, 3u);", Shot::ZooShort, Kernel::Step1),
+    ("common/walk_short.clh", "node_c = node_b, node_b = node_a", "node_c = node_a, node_b = node_a", Shot::ZooShort, Kernel::Step1),
+    ("common/walk_short.clh", "node_a = node_b, node_b = node_c, node_c = node_d;", "node_a = node_b, node_b = node_c;", Shot::ZooShort, Kernel::Step1),
+    ("common/walk_short.clh", "exit_b = exit_c, exit_c = exit_d;", "exit_b = exit_c;", Shot::ZooShort, Kernel::Step1),
+    ("common/walk_short.clh", "31u - clz(waiting)", "31u - clz(waiting & (0u - waiting))", Shot::ZooShort, Kernel::Step1),
+    ("common/walk_short.clh", "t_max = t_exit;", "", Shot::ZooStackless, Kernel::Step1),
 ];
 
 /// Surface points, shadows, the ray tree.
@@ -297,13 +329,13 @@ const PACKING: &[Mutant] = &[
 ];
 
 /// A cache of its own, kept from run to run: mutants shall not crowd the user's.
-fn open() -> OpenOptions {
+fn open(shot: Shot) -> OpenOptions {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("mutants");
-    OpenOptions { cache: CacheFolder::At(folder), ..OpenOptions::default() }
+    OpenOptions { cache: CacheFolder::At(folder), ..walking_by(shot.traversal()) }
 }
 
 fn parity(prepared: &Prepared, shot: Shot, stage: Stage, mutation: Option<Mutation>) -> Vec<KernelParity> {
-    let mut device = prepared.device(true, &open());
+    let mut device = prepared.device(true, &open(shot));
     device.mutate(mutation);
     let mut parity = ParityBackend::new(prepared.twin(), &mut device).only(stage);
     prepared.draw(&mut parity, &shot.options(), shot.counters()).unwrap();
@@ -317,9 +349,20 @@ fn every_broken_line_is_caught() {
     }
     // For whoever changes one kernel: only mutants of this file.
     let only = std::env::var("MUTANTS_OF").unwrap_or_default();
-    let all = [ENTRY_POINTS, CORRECTION, BRIDGES, KNOWN_SHADOWS, TRAVERSAL, RAY_TREE, SHADING, SIMILARITY, PACKING]
-        .into_iter()
-        .flatten();
+    let all = [
+        ENTRY_POINTS,
+        CORRECTION,
+        BRIDGES,
+        KNOWN_SHADOWS,
+        TRAVERSAL,
+        SHORT_WALK,
+        RAY_TREE,
+        SHADING,
+        SIMILARITY,
+        PACKING,
+    ]
+    .into_iter()
+    .flatten();
     let mutants: Vec<&Mutant> = all.filter(|mutant| mutant.0.contains(&only)).collect();
     let mut scenes: HashMap<&str, Prepared> = HashMap::new();
     let mut sound: BTreeSet<String> = BTreeSet::new();

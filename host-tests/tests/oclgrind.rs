@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Every kernel under Oclgrind, an OpenCL device that interprets kernels and watches for data races
-//! and accesses beyond buffers. `.ci/long-oclgrind.sh` sets the environment and runs these; without it
+//! Every kernel under Oclgrind, an OpenCL device that interprets kernels and watches for data races, accesses beyond
+//! buffers and reads of what nobody wrote. `.ci/long-oclgrind.sh` sets the environment and runs these; without it
 //! they do nothing.
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use std::path::{Path, PathBuf};
 
+use rarefy::backend::Backend;
 use rarefy::builtin;
 use rarefy::kernels::Mutation;
+use rarefy::layout::Traversal;
 use rarefy::opencl::CacheFolder;
 use rarefy::options::{CorrectionMethod, Mode, RenderOptions};
 use rarefy::renderer::{DeviceChoice, Keep, Renderer, RendererOptions};
+use rarefy_host_tests::frames::{Drawn, Prepared, walking_by};
 
 /// Where Oclgrind writes what it finds; `None` outside of its script.
 fn log() -> Option<PathBuf> {
@@ -57,6 +60,54 @@ fn no_kernel_races_or_leaves_its_buffers() {
     // The quick self-test ran too: it launches what these frames do on a larger picture.
     assert_eq!(findings(&log), "", "Oclgrind found something");
     println!("Oclgrind: {} frames, every kernel, no finding", 2 * frames.len());
+}
+
+/// A frame on a device of its own, without a quick self-test before: Oclgrind keeps what it knows of a released buffer and
+/// takes it for the next one of that number.
+fn draw_afresh(options: &RenderOptions, counters: bool, traversal: Traversal, mutation: Option<Mutation>) -> Drawn {
+    let prepared = Prepared::named("rods");
+    let mut device = prepared.device(true, &walking_by(traversal));
+    assert!(device.info().name.contains("Oclgrind"), "{:?}", device.info());
+    device.mutate(mutation);
+    prepared.draw(&mut device, options, counters).unwrap()
+}
+
+#[test]
+#[ignore = "oclgrind: reads of what nobody wrote, every kernel and every walk"]
+fn no_kernel_reads_what_nobody_wrote() {
+    let Some(log) = log() else { return };
+    let base = RenderOptions { width: 26, height: 19, ..RenderOptions::default() };
+    let full = RenderOptions { mode: Mode::Full, ..base.clone() };
+    let frames = [
+        (base.clone(), false, Traversal::PrivateStack),
+        (full.clone(), true, Traversal::PrivateStack),
+        (RenderOptions { block: 4, ..base.clone() }, true, Traversal::PrivateStack),
+        (RenderOptions { correction_method: CorrectionMethod::Sweeps, ..base.clone() }, false, Traversal::PrivateStack),
+        (base, true, Traversal::ShortStack),
+        (full, true, Traversal::Stackless),
+    ];
+    for (options, counters, traversal) in &frames {
+        let drawn = draw_afresh(options, *counters, *traversal, None);
+        let prepared = Prepared::named("rods");
+        assert!(drawn == prepared.draw(&mut prepared.twin(), options, *counters).unwrap(), "{options:?}");
+        assert_eq!(findings(&log), "", "{options:?}, {}", traversal.name());
+    }
+    println!("Oclgrind: {} frames, nothing read that nobody wrote", frames.len());
+}
+
+#[test]
+#[ignore = "oclgrind: a kernel that reads what nobody wrote, which must be found"]
+fn a_read_of_what_nobody_wrote_is_found() {
+    let Some(log) = log() else { return };
+    let mutation = Mutation {
+        file: "common/attributes.clh".into(),
+        from: "  out_attributes[PLANE_SHADOW * pitch + at] = a->shadow_bits;".into(),
+        to: String::new(),
+    };
+    let options = RenderOptions { width: 26, height: 19, ..RenderOptions::default() };
+    draw_afresh(&options, false, Traversal::PrivateStack, Some(mutation));
+    let found = findings(&log);
+    assert!(found.contains("depends on uninitialized value") && found.contains("step2a"), "{found}");
 }
 
 #[test]

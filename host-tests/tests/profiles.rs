@@ -2,12 +2,15 @@
 //! Every feature runs under every embedded profile, and draws what it draws without one.
 #![allow(clippy::unwrap_used, missing_docs)]
 
+use std::collections::HashMap;
+
 use rarefy::builtin;
 use rarefy::layers::{self, Layer};
+use rarefy::layout::Traversal;
 use rarefy::opencl::Profile;
 use rarefy::options::{Correction, CorrectionMethod, Interpolation, Mode, RenderOptions};
 use rarefy::renderer::{DeviceChoice, Keep, Renderer, RendererOptions};
-use rarefy_host_tests::frames::no_opencl;
+use rarefy_host_tests::frames::{no_opencl, walking_by};
 
 /// Odd sides, so that work-groups stick out on both.
 const WIDTH: u32 = 125;
@@ -55,8 +58,16 @@ fn features() -> Vec<(String, RenderOptions, Keep)> {
     features
 }
 
-/// A feature's name, its pictures, and the counts that went with them.
-type Drawn = (String, Vec<Vec<u32>>, String);
+/// What a feature drew.
+#[derive(Debug, Clone, PartialEq)]
+struct Drawn {
+    name: String,
+    pictures: Vec<Vec<u32>>,
+    /// All but the steps.
+    counts: String,
+    /// Traversal steps, and the layer that shows them: they depend on the way of walking.
+    steps: (Option<u64>, Vec<u32>),
+}
 
 /// Everything that a renderer can draw.
 fn everything(renderer: &mut Renderer) -> Vec<Drawn> {
@@ -67,16 +78,18 @@ fn everything(renderer: &mut Renderer) -> Vec<Drawn> {
         let frame = renderer.render_exactly(&options, keep).unwrap_or_else(|error| panic!("{at}: {error}"));
         let mut pictures = vec![frame.pixels.clone()];
         let stats = &frame.stats;
-        let counts = format!("{:?} {:?} {:?} {:?}", stats.pixels, stats.rays, stats.work, stats.failed_tests);
+        let tests = stats.work.map(|work| (work.triangle_tests, work.shaded_pixels));
+        let counts = format!("{:?} {:?} {tests:?} {:?}", stats.pixels, stats.rays, stats.failed_tests);
+        let mut steps = (stats.work.map(|work| work.traversal_steps), Vec::new());
         if keep.counters {
             for layer in Layer::NAMES.map(|name| Layer::from_name(name).unwrap()) {
                 if options.mode == Mode::Adaptive || !layer.is_adaptive_only() {
-                    pictures
-                        .push(layers::draw(layer, renderer, &frame).unwrap_or_else(|error| panic!("{at}: {error}")));
+                    let drawn = layers::draw(layer, renderer, &frame).unwrap_or_else(|error| panic!("{at}: {error}"));
+                    if layer == Layer::Rays { steps.1 = drawn } else { pictures.push(drawn) }
                 }
             }
         }
-        all.push((name, pictures, counts));
+        all.push(Drawn { name, pictures, counts, steps });
     }
     all
 }
@@ -84,7 +97,7 @@ fn everything(renderer: &mut Renderer) -> Vec<Drawn> {
 /// The names of the features that differ.
 fn different(a: &[Drawn], b: &[Drawn]) -> Vec<String> {
     assert_eq!(a.len(), b.len());
-    a.iter().zip(b).filter(|(a, b)| a != b).map(|(a, _)| a.0.clone()).collect()
+    a.iter().zip(b).filter(|(a, b)| a != b).map(|(a, _)| a.name.clone()).collect()
 }
 
 #[test]
@@ -93,13 +106,27 @@ fn every_feature_runs_under_every_profile() {
         return;
     }
     let free = everything(&mut renderer(None));
+    let mut walking: HashMap<Traversal, Vec<Drawn>> = HashMap::new();
     for name in Profile::names() {
-        let mut bound = renderer(Some(&Profile::named(name).unwrap()));
+        let profile = Profile::named(name).unwrap();
+        // The same walk without the limits.
+        let traversal = profile.choices().traversal();
+        let free = walking.entry(traversal).or_insert_with(|| {
+            let drawn = everything(&mut renderer(walking_by(traversal).profile.as_ref()));
+            let counted = free.iter().filter(|drawn| drawn.steps.0.is_some()).map(|drawn| drawn.name.clone());
+            assert_eq!(different(&free, &drawn), counted.collect::<Vec<_>>(), "{}", traversal.name());
+            let alike: Vec<Drawn> =
+                drawn.iter().zip(&free).map(|(a, b)| Drawn { steps: b.steps.clone(), ..a.clone() }).collect();
+            assert_eq!(different(&free, &alike), Vec::<String>::new(), "{}, but for the steps", traversal.name());
+            drawn
+        });
+        let mut bound = renderer(Some(&profile));
         assert_eq!((bound.info().backend, bound.info().profile.as_str()), ("opencl", name));
-        assert_eq!(different(&free, &everything(&mut bound)), Vec::<String>::new(), "{name}");
+        assert_eq!(different(free, &everything(&mut bound)), Vec::<String>::new(), "{name}");
     }
+    assert_eq!(walking.len(), 2, "a short stack and none");
     // The comparison can fail: one bit of one picture.
     let mut changed = free.clone();
-    changed[4].1[0][0] ^= 1;
+    changed[4].pictures[0][0] ^= 1;
     assert_eq!(different(&free, &changed), ["one pixel"]);
 }

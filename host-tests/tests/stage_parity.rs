@@ -317,6 +317,9 @@ impl Backend for Tampered {
         self.inner.memory_limits()
     }
 
+    fn traversal(&self) -> rarefy::layout::Traversal {
+        self.inner.traversal()
+    }
     fn begin(&mut self, frame: &FrameParams, sizes: &BufferSizes) -> rarefy::Result<()> {
         self.inner.begin(frame, sizes)
     }

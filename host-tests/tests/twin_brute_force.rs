@@ -9,8 +9,9 @@ use glam::{DVec3, Vec2, Vec3};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngSeed};
 use rarefy::kdtree::KdNode;
-use rarefy::layout::NO_TRIANGLE;
+use rarefy::layout::{NO_TRIANGLE, Traversal};
 use rarefy::scene::{Material, Scene, Surface};
+use rarefy::twin::SceneArgs;
 use rarefy::twin::scene_args::Work;
 use rarefy::twin::traverse::{any_hit, closest_hit};
 use rarefy_host_tests::fixtures::{Random, SceneBuilder, Stand, matte, v};
@@ -124,6 +125,13 @@ impl Tally {
             self.judge_closest(scene, o, d, &hits, found);
         }
         let limit = expected.map_or(1e3, |(t, _)| t) * limit_share;
+        for traversal in [Traversal::ShortStack, Traversal::Stackless] {
+            let args = SceneArgs { traversal, ..args };
+            let other = (closest_hit(&args, o, d, &mut work), any_hit(&args, o, d, limit, &mut work));
+            if other != (hit, any_hit(&stand.args(), o, d, limit, &mut work)) {
+                self.wrong.push(format!("{} from {o} along {d}: {other:?}, not {hit:?}", traversal.name()));
+            }
+        }
         let blockers: Vec<usize> =
             hits.iter().filter(|(t, id)| *t < limit && !casts_no_shadow(scene, *id)).map(|h| h.1).collect();
         let blocked = any_hit(&args, o, d, limit, &mut work);

@@ -8,7 +8,7 @@ pub mod twin;
 pub mod watched;
 
 use crate::error::Result;
-use crate::layout::{COUNTER_COUNT, FrameParams, PLANE_COUNT, StepParams, TAIL_ROUNDS, TAIL_SUM_ENDS};
+use crate::layout::{COUNTER_COUNT, FrameParams, PLANE_COUNT, StepParams, TAIL_ROUNDS, TAIL_SUM_ENDS, Traversal};
 use crate::monitor::Monitor;
 use crate::stage::Kernel;
 
@@ -108,6 +108,9 @@ pub trait Backend {
 
     /// What its memory holds, the profile's limits included.
     fn memory_limits(&self) -> MemoryLimits;
+
+    /// How its rays walk through the kd-tree: what the counted steps depend on.
+    fn traversal(&self) -> Traversal;
 
     /// Makes ready for a frame or a window of it: buffers of these sizes and the parameters.
     ///

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use super::{Backend, BackendInfo, BufferSizes, FrameBuffer, MemoryLimits};
 use crate::error::Result;
 use crate::kernels::{self, Mutation};
-use crate::layout::{self, BuildFlavour, FrameParams, StepParams};
+use crate::layout::{self, BuildFlavour, FrameParams, StepParams, Traversal};
 use crate::monitor::Monitor;
 use crate::opencl::{AnyBuffer, Arg, Buffer, Door, Kernel as DeviceKernel, Launch, Limits, ProgramSource};
 use crate::profiles::Choices;
@@ -107,19 +107,34 @@ impl OpenClBackend {
         door.watch(monitor);
         let on_device = SceneOnDevice::upload(&door, scene)?;
         let scan_group = scan_group(door.limits());
-        Ok(OpenClBackend {
+        let (anchor, traversal) = (scene.shading == Shading::Anchor, door.choices().traversal());
+        let mut backend = OpenClBackend {
             door,
             host_scene: Arc::clone(scene),
             scene: Some(on_device),
             buffers: None,
             kernels: HashMap::new(),
-            flavour: BuildFlavour { strict, count: false, anchor: scene.shading == Shading::Anchor },
+            flavour: BuildFlavour { strict, count: false, anchor, traversal },
             mutation: None,
             scan_group,
             program_ms: 0.0,
             peak_before: 0,
             monitor: monitor.clone(),
-        })
+        };
+        backend.fit_scans();
+        Ok(backend)
+    }
+
+    /// Lowers the work-group of scans to what the driver allows their kernel, which it says once that is built.
+    fn fit_scans(&mut self) {
+        let scan = Kernel::Step2bScan;
+        // What forbids the program is told when a frame wants it.
+        if self.build(scan).is_ok()
+            && let Some(kernel) = self.kernels.get(&(scan, self.flavour))
+        {
+            let [fitted, _] = self.door.fit_work_group(kernel, [self.scan_group as usize, 1], true);
+            self.scan_group = fitted.max(2) as u32;
+        }
     }
 
     /// Breaks the kernels on purpose: for tests, and for the self-test's negative control.
@@ -271,6 +286,10 @@ impl Backend for OpenClBackend {
 
     fn scan_group(&self) -> u32 {
         self.scan_group
+    }
+
+    fn traversal(&self) -> Traversal {
+        self.flavour.traversal
     }
 
     fn memory_limits(&self) -> MemoryLimits {

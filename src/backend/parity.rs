@@ -5,7 +5,7 @@
 use super::twin::TwinBackend;
 use super::{Backend, BackendInfo, BufferSizes, FrameBuffer, MemoryLimits};
 use crate::error::Result;
-use crate::layout::{FrameParams, PLANE_GCOL_B, StepParams};
+use crate::layout::{FrameParams, PLANE_GCOL_B, StepParams, Traversal};
 use crate::monitor::Monitor;
 use crate::stage::{Kernel, Stage};
 
@@ -50,8 +50,9 @@ pub struct ParityBackend<'a> {
 }
 
 impl<'a> ParityBackend<'a> {
-    /// Compares `device` with `twin`; both must hold the same scene.
-    pub fn new(twin: TwinBackend, device: &'a mut dyn Backend) -> Self {
+    /// Compares `device` with `twin`; both must hold the same scene. The twin walks as the device does.
+    pub fn new(mut twin: TwinBackend, device: &'a mut dyn Backend) -> Self {
+        twin.walk_by(device.traversal());
         ParityBackend { twin, device, sizes: None, pitch: 1, only: None, results: Vec::new() }
     }
 
@@ -98,6 +99,10 @@ impl Backend for ParityBackend<'_> {
 
     fn memory_limits(&self) -> MemoryLimits {
         self.device.memory_limits()
+    }
+
+    fn traversal(&self) -> Traversal {
+        self.device.traversal()
     }
 
     fn begin(&mut self, frame: &FrameParams, sizes: &BufferSizes) -> Result<()> {

@@ -3,7 +3,7 @@
 
 use super::{Backend, BackendInfo, BufferSizes, FrameBuffer, MemoryLimits};
 use crate::error::Result;
-use crate::layout::{FrameParams, StepParams, TAIL_SUM_ENDS, TAIL_SUM_ROUNDS};
+use crate::layout::{FrameParams, StepParams, TAIL_SUM_ENDS, TAIL_SUM_ROUNDS, Traversal};
 use crate::monitor::Monitor;
 use crate::stage::Kernel;
 
@@ -43,6 +43,10 @@ impl Backend for RecordingBackend<'_> {
 
     fn memory_limits(&self) -> MemoryLimits {
         self.inner.memory_limits()
+    }
+
+    fn traversal(&self) -> Traversal {
+        self.inner.traversal()
     }
 
     fn begin(&mut self, frame: &FrameParams, sizes: &BufferSizes) -> Result<()> {

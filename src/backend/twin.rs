@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use super::{Backend, BackendInfo, BufferSizes, FrameBuffer, MemoryLimits};
 use crate::error::Result;
-use crate::layout::{FrameParams, StepParams};
+use crate::layout::{FrameParams, StepParams, Traversal};
 use crate::monitor::Monitor;
 use crate::scene_buffers::{SceneBuffers, Shading};
 use crate::stage::Kernel;
@@ -18,6 +18,7 @@ pub struct TwinBackend {
     frame: Option<FrameParams>,
     sizes: Option<BufferSizes>,
     buffers: FrameBuffers,
+    traversal: Traversal,
     timings: Vec<(Kernel, f64)>,
     peak_bytes: u64,
     monitor: Monitor,
@@ -32,10 +33,16 @@ impl TwinBackend {
             frame: None,
             sizes: None,
             buffers: FrameBuffers::default(),
+            traversal: Traversal::default(),
             timings: Vec::new(),
             peak_bytes,
             monitor: Monitor::default(),
         }
+    }
+
+    /// Lets rays walk as a device does that was built for `traversal`, so that steps can be compared.
+    pub fn walk_by(&mut self, traversal: Traversal) {
+        self.traversal = traversal;
     }
 
     fn buffer(&self, buffer: FrameBuffer) -> &Words {
@@ -50,7 +57,7 @@ impl TwinBackend {
     }
 }
 
-/// The scene's arrays as arguments of twin functions.
+/// The scene's arrays as arguments of twin functions, with a private stack for each ray.
 pub fn scene_args<'a>(scene: &'a SceneBuffers, frame: &'a FrameParams) -> SceneArgs<'a> {
     SceneArgs {
         frame,
@@ -65,6 +72,7 @@ pub fn scene_args<'a>(scene: &'a SceneBuffers, frame: &'a FrameParams) -> SceneA
         texels: &scene.texels,
         tables: &scene.tables,
         anchor: scene.shading == Shading::Anchor,
+        traversal: Traversal::default(),
     }
 }
 
@@ -84,6 +92,10 @@ impl Backend for TwinBackend {
 
     fn memory_limits(&self) -> MemoryLimits {
         MemoryLimits { total_bytes: u64::MAX, allocation_bytes: u64::MAX }
+    }
+
+    fn traversal(&self) -> Traversal {
+        self.traversal
     }
 
     fn begin(&mut self, frame: &FrameParams, sizes: &BufferSizes) -> Result<()> {
@@ -109,7 +121,8 @@ impl Backend for TwinBackend {
     fn run(&mut self, kernel: Kernel, step: &StepParams) -> Result<()> {
         let Some(frame) = &self.frame else { return Ok(()) };
         let started = Instant::now();
-        twin::run(kernel, &scene_args(&self.scene, frame), step, &self.buffers, &self.monitor)?;
+        let scene = twin::SceneArgs { traversal: self.traversal, ..scene_args(&self.scene, frame) };
+        twin::run(kernel, &scene, step, &self.buffers, &self.monitor)?;
         self.timings.push((kernel, started.elapsed().as_secs_f64() * 1e3));
         Ok(())
     }

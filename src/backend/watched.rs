@@ -4,7 +4,7 @@
 
 use super::{Backend, BackendInfo, BufferSizes, FrameBuffer, MemoryLimits};
 use crate::error::Result;
-use crate::layout::{FrameParams, StepParams};
+use crate::layout::{FrameParams, StepParams, Traversal};
 use crate::monitor::{Monitor, Preview};
 use crate::stage::{Kernel, Stage};
 use crate::twin::planes::color_index;
@@ -85,6 +85,10 @@ impl Backend for WatchedBackend<'_> {
 
     fn memory_limits(&self) -> MemoryLimits {
         self.inner.memory_limits()
+    }
+
+    fn traversal(&self) -> Traversal {
+        self.inner.traversal()
     }
 
     fn begin(&mut self, frame: &FrameParams, sizes: &BufferSizes) -> Result<()> {

@@ -136,3 +136,110 @@ impl Room {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::builtin;
+    use crate::camera::{MAX_SAMPLE_SIDE, frame_params};
+    use crate::kdtree::{BuildOptions, KdTree};
+    use crate::options::RenderOptions;
+    use crate::scene_buffers::{SceneBuffers, Shading};
+    use crate::twin::planes::{color_index, plane_index};
+
+    /// Random numbers that like powers of two, their neighbours, and both ends.
+    struct Random(u64);
+
+    impl Random {
+        fn bits(&mut self) -> u64 {
+            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            self.0 >> 24
+        }
+
+        fn side(&mut self, most: u32) -> u32 {
+            let near = (1 << (self.bits() % 17)) as u32;
+            let any = (self.bits() % u64::from(most)) as u32 + 1;
+            let side =
+                [near.saturating_sub(1), near, near + 1, most, most - 1, any, any, any][self.bits() as usize % 8];
+            side.clamp(1, most)
+        }
+    }
+
+    /// What must hold of a window that kernels are launched for, in whole numbers without end.
+    fn check(frame: &FrameParams, sizes: &BufferSizes, attributes: bool, counters: bool) {
+        let (rows, block) = (u64::from(frame.window_end - frame.window_begin), u64::from(frame.block));
+        let pixels = u64::from(frame.width) * rows;
+        let pitch = u64::from(frame.width).next_multiple_of(block) * rows.next_multiple_of(block);
+        assert_eq!(u64::from(frame.plane_pitch), pitch);
+        // Plane addresses, lists of both halves and of four directions are 32-bit numbers.
+        assert!(pitch * u64::from(PLANE_COUNT) <= u64::from(u32::MAX));
+        assert!(4 * pixels <= u64::from(u32::MAX));
+        let have = |words: usize, at_least: u64| {
+            assert!(words as u64 >= at_least, "{words} words, not {at_least}: {frame:?}");
+            assert!(words.checked_mul(4).is_some_and(|bytes| isize::try_from(bytes).is_ok()), "{words} words");
+        };
+        have(sizes.color, pixels);
+        have(sizes.attributes, if attributes { pitch * u64::from(PLANE_COUNT) } else { 0 });
+        have(sizes.counters, if counters { pitch } else { 0 });
+        have(sizes.list, if attributes { pixels } else { 0 });
+        have(sizes.masks, if attributes { (4 * pixels).div_ceil(32) } else { 0 });
+        have(sizes.sums, sizes.masks as u64);
+        for (x, y) in [(0, frame.window_begin), (frame.width - 1, frame.window_begin), (0, frame.window_end - 1)]
+            .into_iter()
+            .chain([(frame.width - 1, frame.window_end - 1)])
+        {
+            assert!(plane_index(frame, x, y) < frame.plane_pitch);
+            assert!(u64::from(color_index(frame, x, y)) < pixels);
+        }
+    }
+
+    /// On 32-bit machines, where the long tests run this too, an overflow of `usize` is a panic.
+    #[test]
+    fn no_size_of_any_frame_overflows() {
+        let scene = builtin::to_scene("wall").unwrap();
+        let tree = KdTree::build(&scene.positions, &scene.triangles, &BuildOptions::default(), &crate::Monitor::default()).unwrap();
+        let buffers = SceneBuffers::new(&scene, tree, Shading::Full).unwrap();
+        let mut random = Random(2016);
+        let (mut planned, mut refused, mut cut) = (0, 0, 0);
+        for round in 0..4000 {
+            let samples = [1, 2, 4][random.bits() as usize % 3];
+            let most = (MAX_SAMPLE_SIDE / samples).min(crate::camera::MAX_SIDE);
+            let (width, height) = if round == 0 { (most, most) } else { (random.side(most), random.side(most)) };
+            let options = RenderOptions { width, height, samples, ..RenderOptions::default() };
+            options.validate().unwrap();
+            let (width, height) = options.sample_size();
+            let block = [1, 2, 4][random.bits() as usize % 3];
+            let frame = frame_params(&scene.view, &buffers, width, height, block, 4);
+            let limit = |random: &mut Random| [u64::MAX, u64::MAX, random.bits(), random.bits() >> 16][round % 4];
+            let room = Room {
+                total_bytes: limit(&mut random),
+                allocation_bytes: limit(&mut random),
+                scene_bytes: random.bits(),
+                attributes: block > 1 || round % 2 == 0,
+                counters: round % 3 == 0,
+                scan_group: 2 << (random.bits() % 9),
+            };
+            let most_rows = (round % 5 == 0).then(|| random.side(height));
+            let Ok(plan) = Plan::new(&frame, &room, most_rows) else {
+                refused += 1;
+                continue;
+            };
+            planned += 1;
+            cut += usize::from(!plan.is_one_window());
+            assert!(room.holds(&plan.sizes));
+            let count = plan.bands().count();
+            let mut at = 0;
+            for (band, rows) in plan.bands().enumerate() {
+                assert!(rows.start == at && rows.start < rows.end && rows.start % block == 0, "{rows:?}");
+                at = rows.end;
+                if band < 3 || band + 3 > count {
+                    check(&plan.window(rows), &plan.sizes, room.attributes, room.counters);
+                }
+            }
+            assert_eq!(at, height);
+        }
+        println!("{planned} frames planned, {cut} of them in bands, {refused} refused");
+        assert!(planned > 1000 && refused > 100 && cut > 200);
+    }
+}

@@ -4,7 +4,7 @@
 use rarefy::Result;
 use rarefy::backend::opencl::{scan_group, work_group};
 use rarefy::opencl::{DeviceFound, Limits, Profile, discover};
-use rarefy::profiles::{MemoryPath, Traversal};
+use rarefy::profiles::MemoryPath;
 use rarefy::renderer::DEFAULT_BUDGET_BYTES;
 use rarefy::stage::{Kernel, Stage};
 
@@ -13,7 +13,6 @@ use super::output::{say, write_json};
 
 /// What the kernels can do today; a profile may already choose more.
 const MEMORY_PATHS: [MemoryPath; 1] = [MemoryPath::Buffers];
-const TRAVERSALS: [Traversal; 1] = [Traversal::PrivateStack];
 const LANES: [u32; 1] = [1];
 
 /// Lists devices with their limits and what would be chosen, beside the same under a profile.
@@ -33,8 +32,7 @@ pub fn run(args: &DevicesArgs) -> Result<()> {
             .iter()
             .for_each(|line| say(json, line));
         if under.iter().any(|profile| choice_rows(device, *profile).iter().any(|(_, value)| value.ends_with('*'))) {
-            let (path, traversal) = (MEMORY_PATHS[0].name(), TRAVERSALS[0].name());
-            say(json, &format!("    * not there yet: today {path}, {traversal}, {} lane", LANES[0]));
+            say(json, &format!("    * not there yet: today {}, {} lane", MEMORY_PATHS[0].name(), LANES[0]));
         }
         say(json, "");
     }
@@ -118,14 +116,13 @@ fn choice_rows(device: &DeviceFound, profile: Option<&Profile>) -> Rows {
     }
     let scan = scan_group(&limits);
     let path = choices.memory_path();
-    let traversal = choices.traversal();
     let lanes = choices.lanes();
     rows.extend(
         [
             ("work-group of scans, items", format!("{scan}x1")),
             ("slice, ms", limits.slice_ms.map_or("whole launches".into(), |ms| ms.to_string())),
             ("memory path", marked(path.name(), MEMORY_PATHS.contains(&path))),
-            ("traversal", marked(traversal.name(), TRAVERSALS.contains(&traversal))),
+            ("traversal", choices.traversal().name().into()),
             ("lanes", marked(&lanes.to_string(), LANES.contains(&lanes))),
             ("memory budget, MiB", (DEFAULT_BUDGET_BYTES.min(limits.global_mem_bytes) >> 20).to_string()),
         ]

@@ -5,6 +5,7 @@ use serde_json::{Map, Value};
 
 use super::{Certainty, Entry, bad, entry};
 use crate::Result;
+pub use crate::layout::Traversal;
 
 /// Where nodes and triangles lie in device memory.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -23,25 +24,6 @@ impl MemoryPath {
     }
 }
 
-/// How a kernel remembers the way through the kd-tree.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Traversal {
-    /// An indexed array in private memory: right for CPUs.
-    #[default]
-    PrivateStack,
-    /// A few entries in registers, then a restart: for GPUs where indexed private arrays spill to memory.
-    ShortStack,
-    /// No stack at all.
-    Stackless,
-}
-
-impl Traversal {
-    /// The word that stands for it in a profile.
-    pub fn name(self) -> &'static str {
-        TRAVERSALS[self as usize].0
-    }
-}
-
 /// The choices of a profile.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Choices {
@@ -50,11 +32,6 @@ pub struct Choices {
 
 const KEYS: [&str; 5] = ["work_group", "memory_path", "traversal", "lanes", "slice_ms"];
 const MEMORY_PATHS: [(&str, MemoryPath); 2] = [("buffers", MemoryPath::Buffers), ("images", MemoryPath::Images)];
-const TRAVERSALS: [(&str, Traversal); 3] = [
-    ("private-stack", Traversal::PrivateStack),
-    ("short-stack", Traversal::ShortStack),
-    ("stackless", Traversal::Stackless),
-];
 
 impl Choices {
     /// The shape of a stage's work-groups, width then height, in work-items: 8x8 where the profile says nothing.
@@ -75,7 +52,7 @@ impl Choices {
 
     /// How kernels walk the kd-tree.
     pub fn traversal(&self) -> Traversal {
-        self.word(&TRAVERSALS, "traversal")
+        self.word(&Traversal::NAMES, "traversal")
     }
 
     /// Rays per work-item: 1 where the profile says nothing.
@@ -152,7 +129,7 @@ fn check(key: &str, value: &Value) -> std::result::Result<(), &'static str> {
             "an object of `default` and stages such as `step1`, each [width, height] from 1 to 4096",
         ),
         "memory_path" => (word(&MEMORY_PATHS.map(|(name, _)| name)), "`buffers` or `images`"),
-        "traversal" => (word(&TRAVERSALS.map(|(name, _)| name)), "`private-stack`, `short-stack` or `stackless`"),
+        "traversal" => (word(&Traversal::NAMES.map(|(name, _)| name)), "`private-stack`, `short-stack` or `stackless`"),
         "lanes" => (value.as_u64().is_some_and(|lanes| [1, 4, 8, 16].contains(&lanes)), "1, 4, 8 or 16"),
         _ => (
             value.as_f64().is_some_and(|ms| (0.1..=10_000.0).contains(&ms)),
@@ -187,7 +164,6 @@ mod tests {
     #[test]
     fn words_are_those_of_the_files() {
         assert!(MEMORY_PATHS.iter().all(|(name, value)| value.name() == *name));
-        assert!(TRAVERSALS.iter().all(|(name, value)| value.name() == *name));
     }
 
     #[test]

@@ -24,6 +24,8 @@ mod step3c;
 mod step4;
 pub mod trace;
 pub mod traverse;
+mod walk_short;
+mod walk_stack;
 
 use std::sync::atomic::{AtomicU32, Ordering};
 

@@ -4,7 +4,7 @@
 use glam::Vec3;
 
 use crate::kdtree::KdNode;
-use crate::layout::{FrameParams, Light, Material, Texture, Triangle, TriangleShading};
+use crate::layout::{FrameParams, Light, Material, Texture, Traversal, Triangle, TriangleShading};
 
 /// The scene's buffers as the kernels see them.
 #[derive(Debug, Clone, Copy)]
@@ -23,6 +23,8 @@ pub struct SceneArgs<'a> {
     pub tables: &'a [u32],
     /// Shade by the rules of the speed anchor (`RAREFY_ANCHOR`).
     pub anchor: bool,
+    /// How rays walk through the tree (`RAREFY_SHORT_STACK`).
+    pub traversal: Traversal,
 }
 
 /// Work counters of one item (`Work` of `kernels/types.h`).

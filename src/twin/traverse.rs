@@ -4,8 +4,10 @@
 use glam::Vec3;
 
 use super::scene_args::{SceneArgs, Work};
-use crate::kdtree::{LEAF, MAX_DEPTH};
-use crate::layout::{FAR_AWAY, NO_TEXTURE, NO_TRIANGLE, TRIANGLE_CUTOUT, TRIANGLE_NO_SHADOW};
+use super::walk_short::ShortWalk;
+use super::walk_stack::StackWalk;
+use crate::kdtree::KdNode;
+use crate::layout::{FAR_AWAY, NO_TEXTURE, NO_TRIANGLE, TRIANGLE_CUTOUT, TRIANGLE_NO_SHADOW, Traversal};
 use crate::math::{fraction, max2, min2};
 
 const WIDEN_UP: f32 = 1.000_000_5;
@@ -82,20 +84,25 @@ fn intersect(scene: &SceneArgs, id: u32, o: Vec3, d: Vec3) -> Option<(f32, f32, 
     Some((t, u, v, bits.to_bits()))
 }
 
-/// The walk of one ray: the cells along it, near ones first.
-struct Walk<'a> {
-    nodes: &'a [crate::kdtree::KdNode],
-    org: [f32; 4],
-    inv: [f32; 4],
-    sign: [u32; 4],
-    t_min: f32,
-    t_max: f32,
-    stack: [(u32, f32); MAX_DEPTH],
-    depth: usize,
-    node: u32,
+/// A ray on its way through the tree: `node`, and the part of the ray within it.
+pub(super) struct Walker<'a> {
+    pub nodes: &'a [KdNode],
+    pub org: [f32; 4],
+    pub inv: [f32; 4],
+    pub sign: [u32; 4],
+    pub t_min: f32,
+    pub t_max: f32,
+    pub node: u32,
 }
 
-impl<'a> Walk<'a> {
+/// Where a ray goes at an inner node.
+pub(super) struct Fork {
+    pub t_split: f32,
+    pub near: u32,
+    pub far: u32,
+}
+
+impl<'a> Walker<'a> {
     /// `None` if the ray passes by the tree's box.
     fn begin(scene: &SceneArgs<'a>, o: Vec3, d: Vec3, t_limit: f32) -> Option<Self> {
         let inv = [safe_inverse(d.x), safe_inverse(d.y), safe_inverse(d.z), 0.0];
@@ -106,71 +113,84 @@ impl<'a> Walk<'a> {
         let (az, bz) = ((lo[2] - o.z) * inv[2], (hi[2] - o.z) * inv[2]);
         let t_min = max2(0.0, max2(min2(ax, bx), max2(min2(ay, by), min2(az, bz))) * WIDEN_DOWN);
         let t_max = min2(t_limit, min2(max2(ax, bx), min2(max2(ay, by), max2(az, bz))) * WIDEN_UP);
-        (t_min <= t_max).then_some(Walk {
-            nodes: scene.nodes,
-            org: [o.x, o.y, o.z, 0.0],
-            inv,
-            sign,
-            t_min,
-            t_max,
-            stack: [(0, 0.0); MAX_DEPTH],
-            depth: 0,
-            node: 0,
-        })
+        let org = [o.x, o.y, o.z, 0.0];
+        (t_min <= t_max).then_some(Walker { nodes: scene.nodes, org, inv, sign, t_min, t_max, node: 0 })
     }
+
+    #[inline]
+    pub fn at(&self) -> KdNode {
+        self.nodes[self.node as usize]
+    }
+
+    #[inline]
+    pub fn fork(&self, node: KdNode) -> Fork {
+        let axis = node.axis() as usize;
+        let (lower, sign) = (node.payload(), self.sign[axis]);
+        Fork { t_split: (node.split() - self.org[axis]) * self.inv[axis], near: lower + sign, far: lower + 1 - sign }
+    }
+
+    /// Goes to the near child of a node whose far child is entered at `t_split`.
+    #[inline]
+    pub fn enter_near(&mut self, fork: &Fork) {
+        self.node = fork.near;
+        self.t_max = fork.t_split * WIDEN_UP;
+    }
+}
+
+/// A way of walking: the cells along a ray, near ones first.
+pub(super) trait Walk<'a>: Sized {
+    /// Starts at the root; `traversal` is that of the scene.
+    fn start(walker: Walker<'a>, traversal: Traversal) -> Self;
+
+    /// The ray on its way.
+    fn walker(&mut self) -> &mut Walker<'a>;
+
+    /// Goes down to the next leaf (`DESCEND`).
+    fn descend(&mut self, work: &mut Work);
+
+    /// Goes to the nearest child that was left out (`NEXT_CELL`); `false` if there is none.
+    fn next_cell(&mut self) -> bool;
 
     /// Goes down to the next leaf and returns the range of its entries.
     #[inline]
-    fn descend(&mut self, work: &mut Work) -> std::ops::Range<usize> {
-        let mut node = self.nodes[self.node as usize];
-        while node.axis_and_payload & 3 != LEAF {
-            work.traversal_steps += 1;
-            let axis = (node.axis_and_payload & 3) as usize;
-            let lower = node.axis_and_payload >> 2;
-            let t_split = (f32::from_bits(node.split_or_first) - self.org[axis]) * self.inv[axis];
-            let near = lower + self.sign[axis];
-            let far = lower + 1 - self.sign[axis];
-            if t_split > self.t_max {
-                self.node = near;
-            } else if t_split < self.t_min {
-                self.node = far;
-            } else {
-                self.stack[self.depth] = (far, self.t_max);
-                self.depth += 1;
-                self.node = near;
-                self.t_max = t_split * WIDEN_UP;
-            }
-            node = self.nodes[self.node as usize];
-        }
+    fn leaf(&mut self, work: &mut Work) -> std::ops::Range<usize> {
+        self.descend(work);
+        let node = self.walker().at();
         let first = node.split_or_first as usize;
-        first..first + (node.axis_and_payload >> 2) as usize
+        first..first + node.payload() as usize
     }
 
     /// Where the cells after this leaf begin.
     #[inline]
     fn end_of_leaf(&mut self) -> f32 {
-        self.t_min = self.t_max * WIDEN_DOWN;
-        self.t_min
-    }
-
-    /// Takes the nearest remembered child; `false` if there is none.
-    #[inline]
-    fn pop(&mut self) -> bool {
-        if self.depth == 0 {
-            return false;
-        }
-        self.depth -= 1;
-        (self.node, self.t_max) = self.stack[self.depth];
-        true
+        let walker = self.walker();
+        walker.t_min = walker.t_max * WIDEN_DOWN;
+        walker.t_min
     }
 }
 
 /// The closest hit of the ray `o + t * d` with `t > 0`: the one with the least (t, triangle id).
 pub fn closest_hit(scene: &SceneArgs, o: Vec3, d: Vec3, work: &mut Work) -> Hit {
+    match scene.traversal {
+        Traversal::PrivateStack => closest_by::<StackWalk>(scene, o, d, work),
+        Traversal::ShortStack | Traversal::Stackless => closest_by::<ShortWalk>(scene, o, d, work),
+    }
+}
+
+/// Does anything that casts a shadow lie on the ray with `0 < t < t_limit`?
+pub fn any_hit(scene: &SceneArgs, o: Vec3, d: Vec3, t_limit: f32, work: &mut Work) -> bool {
+    match scene.traversal {
+        Traversal::PrivateStack => any_by::<StackWalk>(scene, o, d, t_limit, work),
+        Traversal::ShortStack | Traversal::Stackless => any_by::<ShortWalk>(scene, o, d, t_limit, work),
+    }
+}
+
+fn closest_by<'a, W: Walk<'a>>(scene: &SceneArgs<'a>, o: Vec3, d: Vec3, work: &mut Work) -> Hit {
     let mut best = Hit::NONE;
-    let Some(mut walk) = Walk::begin(scene, o, d, FAR_AWAY) else { return best };
+    let Some(walker) = Walker::begin(scene, o, d, FAR_AWAY) else { return best };
+    let mut walk = W::start(walker, scene.traversal);
     loop {
-        for &id in &scene.leaf_triangles[walk.descend(work)] {
+        for &id in &scene.leaf_triangles[walk.leaf(work)] {
             work.triangle_tests += 1;
             let Some((t, u, v, bits)) = intersect(scene, id, o, d) else { continue };
             if t > 0.0
@@ -181,17 +201,17 @@ pub fn closest_hit(scene: &SceneArgs, o: Vec3, d: Vec3, work: &mut Work) -> Hit 
             }
         }
         let next = walk.end_of_leaf();
-        if best.t < next || !walk.pop() {
+        if best.t < next || !walk.next_cell() {
             return best;
         }
     }
 }
 
-/// Does anything that casts a shadow lie on the ray with `0 < t < t_limit`?
-pub fn any_hit(scene: &SceneArgs, o: Vec3, d: Vec3, t_limit: f32, work: &mut Work) -> bool {
-    let Some(mut walk) = Walk::begin(scene, o, d, t_limit) else { return false };
+fn any_by<'a, W: Walk<'a>>(scene: &SceneArgs<'a>, o: Vec3, d: Vec3, t_limit: f32, work: &mut Work) -> bool {
+    let Some(walker) = Walker::begin(scene, o, d, t_limit) else { return false };
+    let mut walk = W::start(walker, scene.traversal);
     loop {
-        for &id in &scene.leaf_triangles[walk.descend(work)] {
+        for &id in &scene.leaf_triangles[walk.leaf(work)] {
             work.triangle_tests += 1;
             let Some((t, u, v, bits)) = intersect(scene, id, o, d) else { continue };
             if t > 0.0
@@ -203,7 +223,7 @@ pub fn any_hit(scene: &SceneArgs, o: Vec3, d: Vec3, t_limit: f32, work: &mut Wor
             }
         }
         walk.end_of_leaf();
-        if !walk.pop() {
+        if !walk.next_cell() {
             return false;
         }
     }
