@@ -37,7 +37,7 @@ fn both_back_ends_and_profiles_agree() {
     if no_opencl() {
         return;
     }
-    let mut on_device = |profile| {
+    let on_device = |profile| {
         let mut device = renderer(DeviceChoice::OpenCl(None), profile);
         assert!(device.render_exactly(&options(), Keep::default()).unwrap().pixels == picture);
         wave_model(&mut device, &options()).unwrap()
