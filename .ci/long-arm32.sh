@@ -44,7 +44,7 @@ for scene in mirror-room:96x72 cafe:64x48; do
     arm make-scene "$scene" -o "$scratch/scene" >/dev/null
     "$native" make-scene "$scene" -o "$scratch/scene-64" >/dev/null
     diff -r "$scratch/scene" "$scratch/scene-64"
-    ls "$scratch"/scene/*.png >/dev/null || ls "$scratch"/scene/*/*.png >/dev/null || fail "$scene has no PNG texture"
+    [ -n "$(find "$scratch/scene" -name '*.png' -print -quit)" ] || fail "$scene has no PNG texture"
     draw arm arm
     draw native "$native"
     for picture in color class rays; do

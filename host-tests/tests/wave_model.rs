@@ -4,11 +4,12 @@
 
 use rarefy::builtin;
 use rarefy::compare::wave_model;
+use rarefy::layout::Traversal;
 use rarefy::options::{Mode, RenderOptions};
 use rarefy::profiles::Profile;
 use rarefy::renderer::{DeviceChoice, Keep, Renderer, RendererOptions};
 use rarefy::stage::Stage;
-use rarefy_host_tests::frames::no_opencl;
+use rarefy_host_tests::frames::{no_opencl, walking_by};
 
 fn renderer(device: DeviceChoice, profile: Option<Profile>) -> Renderer {
     let options = RendererOptions { device, profile, strict: true, ..RendererOptions::default() };
@@ -36,11 +37,20 @@ fn both_back_ends_and_profiles_agree() {
     if no_opencl() {
         return;
     }
-    for profile in [None, Some(Profile::named("adreno-420").unwrap())] {
+    let on_device = |profile| {
         let mut device = renderer(DeviceChoice::OpenCl(None), profile);
-        assert_eq!(wave_model(&mut device, &options()).unwrap(), expected);
         assert!(device.render_exactly(&options(), Keep::default()).unwrap().pixels == picture);
+        wave_model(&mut device, &options()).unwrap()
+    };
+    assert_eq!(on_device(None), expected);
+    // The phone walks with a short stack and repeats some steps; its limits change nothing.
+    let phone = on_device(Some(Profile::named("adreno-420").unwrap()));
+    assert_eq!(phone, on_device(walking_by(Traversal::ShortStack).profile));
+    for (cost, of) in phone.full.iter().chain(&phone.adaptive).zip(expected.full.iter().chain(&expected.adaptive)) {
+        assert_eq!((cost.stage, cost.launches, cost.round_trips), (of.stage, of.launches, of.round_trips));
+        assert!((1.0..1.1).contains(&(cost.lanes / of.lanes)), "{cost:?}, not {of:?}");
     }
+    assert!(phone.full[0].lanes > expected.full[0].lanes);
     // Negative control: another frame is another model.
     let other = RenderOptions { correction: rarefy::options::Correction::Off, ..options() };
     assert_ne!(wave_model(&mut twin, &other).unwrap(), expected);

@@ -405,9 +405,11 @@ mod tests {
         for name in Profile::names() {
             let profile = Profile::named(name).unwrap();
             assert_eq!(profile.name(), name);
-            for (key, entry) in profile.limits() {
-                assert!(!entry.source.is_empty(), "{name}: {key}");
-                assert_eq!(entry.value.is_null(), entry.certainty == Certainty::NotFound, "{name}: {key}");
+            let all = profile.limits().chain(profile.hardware.iter().map(|(key, entry)| (*key, entry)));
+            for (key, entry) in all.chain(profile.choices().entries()) {
+                let unknown = entry.certainty == Certainty::NotFound;
+                assert!(unknown || entry.source.len() > 3, "{name}: {key} has no source");
+                assert_eq!(entry.value.is_null(), unknown, "{name}: {key}");
             }
             for key in ["cl_device_max_work_group_size", "cl_device_max_mem_alloc_size", "cl_device_local_mem_size"] {
                 assert!(profile.count(key).is_some(), "{name}: {key}");
