@@ -342,27 +342,14 @@ fn parity(prepared: &Prepared, shot: Shot, stage: Stage, mutation: Option<Mutati
     parity.results
 }
 
-#[test]
-fn every_broken_line_is_caught() {
+/// Each table is a test of its own, so that they run side by side.
+fn every_broken_line_is_caught(tables: &[&'static [Mutant]]) {
     if no_opencl() {
         return;
     }
     // For whoever changes one kernel: only mutants of this file.
     let only = std::env::var("MUTANTS_OF").unwrap_or_default();
-    let all = [
-        ENTRY_POINTS,
-        CORRECTION,
-        BRIDGES,
-        KNOWN_SHADOWS,
-        TRAVERSAL,
-        SHORT_WALK,
-        RAY_TREE,
-        SHADING,
-        SIMILARITY,
-        PACKING,
-    ]
-    .into_iter()
-    .flatten();
+    let all = tables.iter().copied().flatten();
     let mutants: Vec<&Mutant> = all.filter(|mutant| mutant.0.contains(&only)).collect();
     let mut scenes: HashMap<&str, Prepared> = HashMap::new();
     let mut sound: BTreeSet<String> = BTreeSet::new();
@@ -391,9 +378,34 @@ fn every_broken_line_is_caught() {
         }
     }
     assert!(missed.is_empty(), "{} of {} mutants live:\n{}", missed.len(), mutants.len(), missed.join("\n"));
+    println!("{} mutants, all caught", mutants.len());
+}
+
+#[test]
+fn every_entry_point_has_a_mutant_and_all_are_caught() {
     let covered: BTreeSet<Kernel> = ENTRY_POINTS.iter().map(|m| m.4).collect();
     assert_eq!(covered, Kernel::ALL.into_iter().collect(), "a kernel without a mutant of its own");
-    println!("{} mutants, all caught", mutants.len());
+    every_broken_line_is_caught(&[ENTRY_POINTS]);
+}
+
+#[test]
+fn mutants_of_correction_are_caught() {
+    every_broken_line_is_caught(&[CORRECTION]);
+}
+
+#[test]
+fn mutants_across_gaps_and_of_known_shadows_are_caught() {
+    every_broken_line_is_caught(&[BRIDGES, KNOWN_SHADOWS]);
+}
+
+#[test]
+fn mutants_of_walks_and_rays_are_caught() {
+    every_broken_line_is_caught(&[TRAVERSAL, SHORT_WALK, RAY_TREE]);
+}
+
+#[test]
+fn mutants_of_checks_shading_and_packing_are_caught() {
+    every_broken_line_is_caught(&[SHADING, SIMILARITY, PACKING]);
 }
 
 #[test]

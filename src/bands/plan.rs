@@ -198,7 +198,9 @@ mod tests {
     #[test]
     fn no_size_of_any_frame_overflows() {
         let scene = builtin::to_scene("wall").unwrap();
-        let tree = KdTree::build(&scene.positions, &scene.triangles, &BuildOptions::default(), &crate::Monitor::default()).unwrap();
+        let tree =
+            KdTree::build(&scene.positions, &scene.triangles, &BuildOptions::default(), &crate::Monitor::default())
+                .unwrap();
         let buffers = SceneBuffers::new(&scene, tree, Shading::Full).unwrap();
         let mut random = Random(2016);
         let (mut planned, mut refused, mut cut) = (0, 0, 0);
