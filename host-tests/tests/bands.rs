@@ -66,6 +66,19 @@ fn five_band_heights_draw_one_picture_on_both_back_ends() {
     }
 }
 
+#[test]
+fn dashes_are_found_across_gaps_in_bands_of_any_height() {
+    for device in devices() {
+        let mut renderer = renderer(dashes(&[(4.3, 6.0), (52.3, -9.0)]), device);
+        let options = RenderOptions { width: 64, height: 64, ..RenderOptions::default() };
+        let (with, _) = draw(&mut renderer, &options);
+        let (without, _) = draw(&mut renderer, &RenderOptions { correction_bridges: false, ..options.clone() });
+        assert!(with.pixels != without.pixels, "there are no gaps to look across");
+        assert_same_in_bands(&mut renderer, &options, &[2, 4, 6, 10, 32]);
+        assert_same_in_bands(&mut renderer, &RenderOptions { block: 4, ..options }, &[4, 8, 12, 20, 32]);
+    }
+}
+
 /// A wall with a thin wire before it that lies between two columns of base pixels; only its lowest part is so wide
 /// that one of them meets it. Everything above is found by correction alone, upwards through all bands.
 fn wire_scene() -> Scene {
