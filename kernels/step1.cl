@@ -2,7 +2,7 @@
 // step1 (paper, Step I): trace and shade every base pixel. At step 1 in both directions this is full ray tracing.
 // Inputs: frame, scene. Outputs: colour; with STEP_STORE the attribute planes and class BASE.
 // Invariant: every pixel origin + step * item of the grid is written once. Cost: one ray tree per item.
-// Twin: src/twin/step1.rs.
+// Twin: src/device/twin/step1.rs.
 #include "types.h"
 #include "common/trace.clh"
 

@@ -5,7 +5,7 @@
 // PENDING with the fail mask, claim, colour of interpolated pixels.
 // Invariant: every pixel of the grid gets a class; references are not written. Cost: two attribute vectors read, one
 // written, one local shading per interpolated item; no rays.
-// Twin: src/twin/step2a.rs.
+// Twin: src/device/twin/step2a.rs.
 #include "types.h"
 #include "common/similarity.clh"
 

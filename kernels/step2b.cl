@@ -4,7 +4,7 @@
 // the number of them as the last word of the scan's last level.
 // Invariant: every PENDING pixel of the grid is listed once. Cost: one class word read per grid item, and per 32 items
 // one mask word and a logarithmic scan.
-// Twin: src/twin/step2b.rs.
+// Twin: src/device/twin/step2b.rs.
 #include "types.h"
 #include "common/pack_order.clh"
 #include "common/pack.clh"

@@ -2,7 +2,7 @@
 // step3c (paper, Step III-c): trace and shade the packed A2 pixels, as step1 does for base pixels.
 // Inputs: frame, scene, list[list_offset .. list_offset + item_count). Outputs: attribute planes, class TRACED, colour.
 // Invariant: exactly the listed pixels are written. Cost: one ray tree per item.
-// Twin: src/twin/step3c.rs.
+// Twin: src/device/twin/step3c.rs.
 #include "types.h"
 #include "common/trace.clh"
 

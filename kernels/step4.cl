@@ -13,7 +13,7 @@
 // (changed) or CONFIRMED, colour, list entries from list_offset on.
 // Invariant: only INTERPOLATED pixels are written, each once. Cost: 4 class words and up to 7 attribute vectors per
 // source, one ray tree per listed pixel.
-// Twin: src/twin/step4.rs.
+// Twin: src/device/twin/step4.rs.
 #include "types.h"
 #include "common/bridge.clh"
 #include "common/pack.clh"

@@ -15,7 +15,7 @@
 //! })
 //! .with_cancel(&cancel);
 //! cancel.cancel();
-//! let tree = rarefy::kdtree::KdTree::build(&[], &[], &Default::default(), &monitor);
+//! let tree = rarefy::prepare::kdtree::KdTree::build(&[], &[], &Default::default(), &monitor);
 //! assert!(matches!(tree, Err(rarefy::Error::Cancelled)));
 //! ```
 
@@ -75,7 +75,7 @@ pub struct Preview<'a> {
     pub height: u32,
     /// The row of the preview at which `pixels` begin.
     pub first_row: u32,
-    /// Whole rows of sRGB words, as in [`crate::frame::Frame`].
+    /// Whole rows of sRGB words, as in [`crate::method::frame::Frame`].
     pub pixels: &'a [u32],
 }
 

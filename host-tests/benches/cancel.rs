@@ -11,10 +11,11 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
+use rarefy::method::options::{Mode, RenderOptions};
 use rarefy::monitor::{Cancel, Event, Monitor};
-use rarefy::options::{Mode, RenderOptions};
-use rarefy::renderer::{DeviceChoice, Keep, Renderer, RendererOptions};
-use rarefy::{Error, Result, builtin, scene};
+use rarefy::render::renderer::{DeviceChoice, Keep, Renderer, RendererOptions};
+use rarefy::scene::{self, builtin};
+use rarefy::{Error, Result};
 
 /// Random numbers, the same on every machine.
 struct Random(u32);

@@ -14,9 +14,9 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
-use rarefy::options::{Mode, RenderOptions};
-use rarefy::renderer::{DeviceChoice, Keep, Renderer, RendererOptions};
-use rarefy::scene_buffers::Shading;
+use rarefy::method::options::{Mode, RenderOptions};
+use rarefy::prepare::scene_buffers::Shading;
+use rarefy::render::renderer::{DeviceChoice, Keep, Renderer, RendererOptions};
 
 const SCENES: [&str; 6] = ["modern-hall", "figures", "classroom", "living-room", "bathroom", "kitchen"];
 const SIZE: u32 = 1024;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Doors to OpenCL and small kernels to send through them.
 
-use rarefy::opencl::{
+use rarefy::device::opencl::{
     Arg, CacheFolder, Door, Kernel, Launch, OpenOptions, Profile, ProgramSource, build_log, open_with,
 };
 

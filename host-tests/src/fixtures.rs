@@ -3,21 +3,21 @@
 #![allow(clippy::unwrap_used)]
 
 use glam::{Vec2, Vec3};
-use rarefy::backend::twin::scene_args;
-use rarefy::camera::frame_params;
-use rarefy::kdtree::{BuildOptions, KdTree};
+use rarefy::device::twin::SceneArgs;
+use rarefy::device::twin::executor::scene_args;
+use rarefy::device::twin::known_shadows::KnownShadows;
+use rarefy::device::twin::scene_args::Work;
+use rarefy::device::twin::shade::{ShadePoint, shade_local};
+use rarefy::device::twin::trace::{SurfacePoint, gather_secondary, shadow_test, surface_point};
+use rarefy::device::twin::traverse::closest_hit;
 use rarefy::layout::{FrameParams, NO_TRIANGLE};
 use rarefy::math::pack_normal;
-use rarefy::options::{Correction, Mode, RenderOptions, Tolerances};
-use rarefy::renderer::{DeviceChoice, Keep, Renderer, RendererOptions};
+use rarefy::method::camera::frame_params;
+use rarefy::method::options::{Correction, Mode, RenderOptions, Tolerances};
+use rarefy::prepare::kdtree::{BuildOptions, KdTree};
+use rarefy::prepare::scene_buffers::{SceneBuffers, Shading};
+use rarefy::render::renderer::{DeviceChoice, Keep, Renderer, RendererOptions};
 use rarefy::scene::{Light, Material, Object, Scene, Surface, Texture};
-use rarefy::scene_buffers::{SceneBuffers, Shading};
-use rarefy::twin::SceneArgs;
-use rarefy::twin::known_shadows::KnownShadows;
-use rarefy::twin::scene_args::Work;
-use rarefy::twin::shade::{ShadePoint, shade_local};
-use rarefy::twin::trace::{SurfacePoint, gather_secondary, shadow_test, surface_point};
-use rarefy::twin::traverse::closest_hit;
 
 /// Shorthand for a vector.
 pub fn v(x: f32, y: f32, z: f32) -> Vec3 {
@@ -277,7 +277,7 @@ pub fn options(mode: Mode, width: u32, height: u32, block: u32) -> RenderOptions
 }
 
 /// Draws a frame without the fall-back and keeps its attributes. Returns picture and statistics.
-pub fn draw(renderer: &mut Renderer, options: &RenderOptions) -> rarefy::frame::Frame {
+pub fn draw(renderer: &mut Renderer, options: &RenderOptions) -> rarefy::method::frame::Frame {
     renderer.render_exactly(options, Keep::EVERYTHING).unwrap()
 }
 

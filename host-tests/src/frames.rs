@@ -4,21 +4,21 @@
 use std::sync::Arc;
 
 use rarefy::Scene;
-use rarefy::backend::opencl::OpenClBackend;
-use rarefy::backend::twin::TwinBackend;
-use rarefy::backend::{Backend, BufferSizes, FrameBuffer};
-use rarefy::bands::{self, Plan, Room};
-use rarefy::builtin;
-use rarefy::camera::frame_params;
-use rarefy::frame::Keep;
-use rarefy::kdtree::{BuildOptions, KdTree};
+use rarefy::device::backend::{Backend, BufferSizes, FrameBuffer};
+use rarefy::device::opencl::executor::OpenClBackend;
+use rarefy::device::opencl::{OpenOptions, Profile, open_with};
+use rarefy::device::twin::executor::TwinBackend;
+use rarefy::device::twin::planes::plane_index;
 use rarefy::layout::*;
-use rarefy::opencl::{OpenOptions, Profile, open_with};
-use rarefy::options::{Mode, RenderOptions};
-use rarefy::pipeline::{self, PixelCounts};
+use rarefy::method::bands::{self, Plan, Room};
+use rarefy::method::camera::frame_params;
+use rarefy::method::frame::Keep;
+use rarefy::method::options::{Mode, RenderOptions};
+use rarefy::method::pipeline::{self, PixelCounts};
+use rarefy::prepare::kdtree::{BuildOptions, KdTree};
+use rarefy::prepare::scene_buffers::{SceneBuffers, Shading};
+use rarefy::scene::builtin;
 use rarefy::scene::{Object, Surface, Texture};
-use rarefy::scene_buffers::{SceneBuffers, Shading};
-use rarefy::twin::planes::plane_index;
 
 /// A test that finds no OpenCL fails, unless this variable says `none`.
 pub const WITHOUT_OPENCL: &str = "RAREFY_TEST_OPENCL";

@@ -4,7 +4,7 @@
 
 use glam::DVec3;
 use rarefy::layout::{CLASS_BASE, CLASS_INTERPOLATED, CLASS_MASK, CLASS_TRACED, FAIL_ALL, PLANE_CLASS};
-use rarefy::options::{Mode, RenderOptions, Tolerances};
+use rarefy::method::options::{Mode, RenderOptions, Tolerances};
 use rarefy::scene::Scene;
 
 use crate::fixtures::{SceneBuilder, draw, options, twin_renderer};

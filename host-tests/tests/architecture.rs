@@ -10,19 +10,12 @@ use rarefy_host_tests::command::root;
 /// The modules of the library in layers: a module may use those of its own layer and of the layers before.
 const LAYERS: &[&[&str]] = &[
     &["error", "math", "monitor"],
-    &["scene"],
-    &["kdtree"],
     &["layout"],
-    &["scene_buffers", "camera", "picture", "metrics", "builtin", "options", "resolve"],
-    &["stage", "kernels", "twin"],
-    &["opencl", "profiles"],
-    &["backend"],
-    &["pipeline"],
-    &["frame", "fallback", "quick_test"],
-    &["bands"],
-    &["wave_model"],
-    &["renderer"],
-    &["compare", "layers", "report", "selftest"],
+    &["scene"],
+    &["prepare"],
+    &["device"],
+    &["method"],
+    &["render", "selftest", "analysis"],
 ];
 
 fn layer(module: &str) -> Option<usize> {
@@ -94,13 +87,13 @@ fn modules_use_only_what_comes_before_them() {
         wrong.extend(wrong_way(&file, &text));
         // The command is a user of the library, and its only one that knows the terminal.
         assert!(outside || !text.contains("clap::") && !text.contains("indicatif::"), "{file} knows the command line");
-        assert!(file.starts_with("src/opencl/") || !text.contains("opencl3::"), "{file} goes round the door");
+        assert!(file.starts_with("src/device/opencl/") || !text.contains("opencl3::"), "{file} goes round the door");
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
     // The check can fail.
-    assert_eq!(wrong_way("src/scene/load.rs", "use crate::renderer::Renderer;").len(), 1);
-    assert_eq!(wrong_way("src/scene/load.rs", "use crate::{error, backend::twin};").len(), 1);
-    assert!(wrong_way("src/renderer.rs", "use crate::scene::Scene;").is_empty());
+    assert_eq!(wrong_way("src/scene/import/load.rs", "use crate::render::renderer::Renderer;").len(), 1);
+    assert_eq!(wrong_way("src/scene/import/load.rs", "use crate::{error, backend::twin};").len(), 1);
+    assert!(wrong_way("src/render/renderer.rs", "use crate::scene::Scene;").is_empty());
 }
 
 /// `NAME` and the like; file names in capitals, such as `README.md`, lie outside the folders that are looked for.

@@ -4,12 +4,12 @@
 
 use glam::{DVec3, Vec3};
 use rarefy::Error;
-use rarefy::builtin;
-use rarefy::frame::Frame;
 use rarefy::layout::*;
-use rarefy::options::{Correction, CorrectionMethod, Mode, RenderOptions};
-use rarefy::renderer::{DeviceChoice, Keep, Renderer, RendererOptions};
+use rarefy::method::frame::Frame;
+use rarefy::method::options::{Correction, CorrectionMethod, Mode, RenderOptions};
+use rarefy::render::renderer::{DeviceChoice, Keep, Renderer, RendererOptions};
 use rarefy::scene::Scene;
+use rarefy::scene::builtin;
 use rarefy_host_tests::fixtures::*;
 use rarefy_host_tests::frames::no_opencl;
 use rarefy_host_tests::masks::*;

@@ -7,8 +7,8 @@ use std::path::Path;
 
 use glam::Vec3;
 use rarefy::Error;
-use rarefy::builtin::mesh::Mesh;
-use rarefy::builtin::{self, Model};
+use rarefy::scene::builtin::mesh::Mesh;
+use rarefy::scene::builtin::{self, Model};
 use rarefy::scene::{Scene, Surface};
 
 fn all() -> Vec<Model> {

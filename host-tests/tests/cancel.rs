@@ -8,11 +8,11 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use rarefy::frame::Frame;
 use rarefy::layout::*;
+use rarefy::method::frame::Frame;
+use rarefy::method::options::{Mode, RenderOptions};
 use rarefy::monitor::{Cancel, Event, Monitor};
-use rarefy::options::{Mode, RenderOptions};
-use rarefy::renderer::{DeviceChoice, Keep, Renderer, RendererOptions};
+use rarefy::render::renderer::{DeviceChoice, Keep, Renderer, RendererOptions};
 use rarefy::{Error, Scene, builtin, scene};
 use rarefy_host_tests::command::root;
 use rarefy_host_tests::frames::no_opencl;
@@ -132,7 +132,7 @@ fn other_errors_leave_the_frame_before_as_well() {
     renderer.render_exactly(&small(30, 20), Keep::planes(&[PLANE_OBJECT])).unwrap();
     let objects = renderer.plane(PLANE_OBJECT).unwrap();
     let wrong = RenderOptions { band_rows: Some(2), ..small(30, 20) };
-    let sweeps = RenderOptions { correction_method: rarefy::options::CorrectionMethod::Sweeps, ..wrong };
+    let sweeps = RenderOptions { correction_method: rarefy::method::options::CorrectionMethod::Sweeps, ..wrong };
     assert!(renderer.render_exactly(&sweeps, Keep::default()).is_err());
     assert_eq!(renderer.plane(PLANE_OBJECT).unwrap(), objects);
     // A finished frame replaces it.

@@ -4,13 +4,13 @@
 //! that takes what rays find from the full picture.
 #![allow(clippy::unwrap_used)]
 
-use rarefy::backend::{Backend, FrameBuffer};
-use rarefy::builtin;
+use rarefy::device::backend::{Backend, FrameBuffer};
+use rarefy::device::stage::Kernel;
 use rarefy::layout::*;
-use rarefy::options::{Correction, CorrectionMethod, Mode, RenderOptions};
-use rarefy::renderer::Renderer;
+use rarefy::method::options::{Correction, CorrectionMethod, Mode, RenderOptions};
+use rarefy::render::renderer::Renderer;
 use rarefy::scene::Scene;
-use rarefy::stage::Kernel;
+use rarefy::scene::builtin;
 use rarefy_host_tests::fixtures::*;
 
 /// The planes of a frame that correction is about, row-major.

@@ -2,10 +2,10 @@
 //! A device that is lost in the middle of a frame, as when a phone's watchdog strikes: injected, on a real OpenCL.
 #![allow(clippy::unwrap_used, missing_docs)]
 
+use rarefy::device::opencl::{CacheFolder, Faults};
 use rarefy::layout::PLANE_OBJECT;
-use rarefy::opencl::{CacheFolder, Faults};
-use rarefy::options::RenderOptions;
-use rarefy::renderer::{DeviceChoice, Keep, Renderer, RendererOptions};
+use rarefy::method::options::RenderOptions;
+use rarefy::render::renderer::{DeviceChoice, Keep, Renderer, RendererOptions};
 use rarefy::{Error, Monitor, builtin};
 use rarefy_host_tests::frames::no_opencl;
 

@@ -6,11 +6,11 @@
 
 use std::path::{Path, PathBuf};
 
-use rarefy::builtin;
-use rarefy::layers::{self, Layer};
-use rarefy::options::{Mode, RenderOptions};
-use rarefy::picture::{read_rgb8, write_png};
-use rarefy::renderer::{DeviceChoice, Keep, Renderer, RendererOptions};
+use rarefy::analysis::layers::{self, Layer};
+use rarefy::method::options::{Mode, RenderOptions};
+use rarefy::render::picture::{read_rgb8, write_png};
+use rarefy::render::renderer::{DeviceChoice, Keep, Renderer, RendererOptions};
+use rarefy::scene::builtin;
 use rarefy_host_tests::command::root;
 
 const WIDTH: u32 = 128;

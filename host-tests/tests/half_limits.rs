@@ -3,12 +3,12 @@
 //! limit's name, both numbers and a remedy. The texts are those of docs/opencl-limits.md.
 #![allow(clippy::unwrap_used, missing_docs)]
 
-use rarefy::backend::Backend;
-use rarefy::backend::opencl::{OpenClBackend, scan_group, work_group};
-use rarefy::opencl::{CacheFolder, OpenOptions, Profile, open_with};
-use rarefy::options::RenderOptions;
-use rarefy::renderer::{DeviceChoice, Keep, Renderer, RendererOptions};
-use rarefy::stage::Kernel;
+use rarefy::device::backend::Backend;
+use rarefy::device::opencl::executor::{OpenClBackend, scan_group, work_group};
+use rarefy::device::opencl::{CacheFolder, OpenOptions, Profile, open_with};
+use rarefy::device::stage::Kernel;
+use rarefy::method::options::RenderOptions;
+use rarefy::render::renderer::{DeviceChoice, Keep, Renderer, RendererOptions};
 use rarefy::{Error, builtin};
 use rarefy_host_tests::frames::{Prepared, no_opencl};
 

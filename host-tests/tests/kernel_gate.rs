@@ -5,7 +5,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use rarefy::kernels::{FILES, assemble};
+use rarefy::device::kernels::{FILES, assemble};
 use rarefy::layout::{BuildFlavour, Traversal, build_options};
 use rarefy_host_tests::clang::{check, clang};
 use rarefy_host_tests::command::root;
@@ -157,7 +157,7 @@ fn no_kernel_recurses() {
 #[test]
 fn every_kernel_file_is_embedded_and_says_what_it_does() {
     let embedded: BTreeSet<String> = FILES.iter().map(|(name, _)| (*name).to_owned()).collect();
-    assert_eq!(embedded, files_on_disk(), "src/kernels.rs embeds other files than kernels/ holds");
+    assert_eq!(embedded, files_on_disk(), "src/device/kernels.rs embeds other files than kernels/ holds");
     for (name, text) in FILES {
         let mut lines = text.lines();
         assert_eq!(lines.next(), Some("// SPDX-License-Identifier: MIT OR Apache-2.0"), "kernels/{name}");

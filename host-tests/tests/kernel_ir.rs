@@ -5,10 +5,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use rarefy::kernels::FILES;
+use rarefy::device::kernels::FILES;
+use rarefy::device::opencl::Profile;
+use rarefy::device::stage::{Binding, Kernel, Stage};
 use rarefy::layout::{BuildFlavour, StepParams, Traversal, build_options};
-use rarefy::opencl::Profile;
-use rarefy::stage::{Binding, Kernel, Stage};
 use rarefy_host_tests::clang::{clang, intermediate_code};
 use rarefy_host_tests::command::root;
 

@@ -4,10 +4,10 @@
 #![allow(clippy::unwrap_used)]
 
 use glam::{Vec2, Vec3};
-use rarefy::frame::{Frame, Keep};
 use rarefy::layout::*;
-use rarefy::options::{Correction, Mode, RenderOptions};
-use rarefy::renderer::Renderer;
+use rarefy::method::frame::{Frame, Keep};
+use rarefy::method::options::{Correction, Mode, RenderOptions};
+use rarefy::render::renderer::Renderer;
 use rarefy::scene::Scene;
 use rarefy_host_tests::fixtures::*;
 
@@ -93,7 +93,7 @@ fn at_folds_and_between_objects_every_light_is_asked() {
 
 #[test]
 fn the_strictest_tolerances_ask_every_light() {
-    for scene in [half_shadow().build(40.0), rarefy::builtin::to_scene("mirror-room").unwrap()] {
+    for scene in [half_shadow().build(40.0), rarefy::scene::builtin::to_scene("mirror-room").unwrap()] {
         let mut renderer = twin_renderer(scene);
         let full = render(&mut renderer, &options(Mode::Full, SIDE, SIDE, 2));
         let mut strictest = adaptive(true);

@@ -4,10 +4,10 @@
 #![allow(clippy::unwrap_used)]
 
 use glam::{DVec3, Vec2, Vec3};
-use rarefy::builtin;
 use rarefy::layout::*;
 use rarefy::math::{unpack_normal, unpack_texcoord};
-use rarefy::options::{Correction, CorrectionMethod, Interpolation, Mode, RenderOptions, Tolerances};
+use rarefy::method::options::{Correction, CorrectionMethod, Interpolation, Mode, RenderOptions, Tolerances};
+use rarefy::scene::builtin;
 use rarefy::scene::{Material, Scene};
 use rarefy_host_tests::fixtures::*;
 use rarefy_host_tests::masks::*;
@@ -82,7 +82,7 @@ fn pictures() -> Vec<Scene> {
     scenes
 }
 
-fn full_picture(renderer: &mut rarefy::renderer::Renderer, width: u32, height: u32) -> Vec<u32> {
+fn full_picture(renderer: &mut rarefy::render::renderer::Renderer, width: u32, height: u32) -> Vec<u32> {
     draw(renderer, &options(Mode::Full, width, height, 2)).pixels
 }
 

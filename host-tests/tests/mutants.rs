@@ -8,14 +8,14 @@
 use std::collections::{BTreeSet, HashMap};
 use std::path::Path;
 
-use rarefy::backend::parity::{KernelParity, ParityBackend};
-use rarefy::kernels::{FILES, Mutation};
+use rarefy::device::hooks::parity::{KernelParity, ParityBackend};
+use rarefy::device::kernels::{FILES, Mutation};
+use rarefy::device::opencl::{CacheFolder, OpenOptions};
+use rarefy::device::stage::{Kernel, Stage};
 use rarefy::layout::Traversal;
-use rarefy::opencl::{CacheFolder, OpenOptions};
-use rarefy::options::{CorrectionMethod, RenderOptions};
-use rarefy::renderer::RendererOptions;
-use rarefy::selftest;
-use rarefy::stage::{Kernel, Stage};
+use rarefy::method::options::{CorrectionMethod, RenderOptions};
+use rarefy::render::renderer::RendererOptions;
+use rarefy::selftest::full;
 use rarefy_host_tests::frames::{Prepared, no_opencl, walking_by};
 
 /// The frame that a mutant is drawn in.
@@ -414,8 +414,8 @@ fn the_self_test_names_every_stage_that_is_broken() {
         return;
     }
     for stage in Stage::ALL {
-        let mutation = Some(selftest::breaking_mutation(stage));
-        let result = selftest::run(&RendererOptions { mutation, ..RendererOptions::default() }).unwrap();
+        let mutation = Some(full::breaking_mutation(stage));
+        let result = full::run(&RendererOptions { mutation, ..RendererOptions::default() }).unwrap();
         let wrong: Vec<&str> = result.checks.iter().filter(|c| !c.passed).map(|c| c.name.as_str()).collect();
         assert!(!wrong.is_empty(), "{}: passes", stage.name());
         assert!(wrong.iter().all(|name| name.starts_with(stage.name())), "{}: {wrong:?}", stage.name());

@@ -6,13 +6,13 @@
 
 use std::path::{Path, PathBuf};
 
-use rarefy::backend::Backend;
-use rarefy::builtin;
-use rarefy::kernels::Mutation;
+use rarefy::device::backend::Backend;
+use rarefy::device::kernels::Mutation;
+use rarefy::device::opencl::CacheFolder;
 use rarefy::layout::Traversal;
-use rarefy::opencl::CacheFolder;
-use rarefy::options::{CorrectionMethod, Mode, RenderOptions};
-use rarefy::renderer::{DeviceChoice, Keep, Renderer, RendererOptions};
+use rarefy::method::options::{CorrectionMethod, Mode, RenderOptions};
+use rarefy::render::renderer::{DeviceChoice, Keep, Renderer, RendererOptions};
+use rarefy::scene::builtin;
 use rarefy_host_tests::frames::{Drawn, Prepared, walking_by};
 
 /// Where Oclgrind writes what it finds; `None` outside of its script.

@@ -5,8 +5,8 @@
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use rarefy::Error;
+use rarefy::device::opencl::{Arg, Faults, Launch, OpenOptions, Profile, ProgramSource, build_log, open_with};
 use rarefy::monitor::{Cancel, Event, Monitor};
-use rarefy::opencl::{Arg, Faults, Launch, OpenOptions, Profile, ProgramSource, build_log, open_with};
 use rarefy_host_tests::doors::{SOURCE, count, counted, door, door_with, kernel, launch_sum, options};
 use rarefy_host_tests::frames::no_opencl;
 

@@ -4,9 +4,10 @@
 //! Oclgrind runs these with `--test-threads 1` only: it mixes up contexts of several threads.
 #![allow(clippy::unwrap_used, missing_docs)]
 
-use rarefy::opencl::{Arg, CacheFolder, Launch, OpenOptions, Profile, ProgramSource, discover};
-use rarefy::renderer::{DeviceChoice, Renderer, RendererOptions};
-use rarefy::{Error, Monitor, builtin};
+use rarefy::device::opencl::{Arg, CacheFolder, Launch, OpenOptions, Profile, ProgramSource, discover};
+use rarefy::render::renderer::{DeviceChoice, Renderer, RendererOptions};
+use rarefy::scene::builtin;
+use rarefy::{Error, Monitor};
 use rarefy_host_tests::doors::{
     SOURCE, count, counted, door, door_under, door_with, kernel, launch_sum, options, profile,
 };

@@ -4,12 +4,12 @@
 
 use std::collections::HashMap;
 
-use rarefy::builtin;
-use rarefy::layers::{self, Layer};
+use rarefy::analysis::layers::{self, Layer};
+use rarefy::device::opencl::Profile;
 use rarefy::layout::Traversal;
-use rarefy::opencl::Profile;
-use rarefy::options::{Correction, CorrectionMethod, Interpolation, Mode, RenderOptions};
-use rarefy::renderer::{DeviceChoice, Keep, Renderer, RendererOptions};
+use rarefy::method::options::{Correction, CorrectionMethod, Interpolation, Mode, RenderOptions};
+use rarefy::render::renderer::{DeviceChoice, Keep, Renderer, RendererOptions};
+use rarefy::scene::builtin;
 use rarefy_host_tests::frames::{no_opencl, walking_by};
 
 /// Odd sides, so that work-groups stick out on both.

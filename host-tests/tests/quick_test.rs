@@ -4,12 +4,12 @@
 
 use std::path::{Path, PathBuf};
 
-use rarefy::kernels::Mutation;
-use rarefy::opencl::{CacheFolder, OpenOptions, Profile};
-use rarefy::options::RenderOptions;
-use rarefy::quick_test::{self, Known};
-use rarefy::renderer::{DeviceChoice, Keep, Renderer, RendererOptions};
-use rarefy::stage::Stage;
+use rarefy::device::kernels::Mutation;
+use rarefy::device::opencl::{CacheFolder, OpenOptions, Profile};
+use rarefy::device::stage::Stage;
+use rarefy::method::options::RenderOptions;
+use rarefy::render::renderer::{DeviceChoice, Keep, Renderer, RendererOptions};
+use rarefy::selftest::quick::{self, Known};
 use rarefy::{Error, builtin, selftest};
 use rarefy_host_tests::frames::{Prepared, no_opencl};
 

@@ -6,7 +6,7 @@
 use glam::{DVec3, Vec2, Vec3};
 use rarefy::layout::*;
 use rarefy::math::unpack_texcoord;
-use rarefy::options::{RenderOptions, Tolerances};
+use rarefy::method::options::{RenderOptions, Tolerances};
 use rarefy::scene::{Material, Scene};
 use rarefy_host_tests::fixtures::*;
 use rarefy_host_tests::masks::*;

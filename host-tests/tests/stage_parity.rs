@@ -7,15 +7,15 @@ use std::path::Path;
 
 use rarefy::Monitor;
 use rarefy::Scene;
-use rarefy::backend::parity::{KernelParity, ParityBackend};
-use rarefy::backend::twin::TwinBackend;
-use rarefy::backend::{Backend, BackendInfo, BufferSizes, FrameBuffer, MemoryLimits};
-use rarefy::builtin;
+use rarefy::device::backend::{Backend, BackendInfo, BufferSizes, FrameBuffer, MemoryLimits};
+use rarefy::device::hooks::parity::{KernelParity, ParityBackend};
+use rarefy::device::opencl::{OpenOptions, Profile};
+use rarefy::device::stage::{Kernel, Stage};
+use rarefy::device::twin::executor::TwinBackend;
 use rarefy::layout::{FrameParams, StepParams, expected_probe};
-use rarefy::opencl::{OpenOptions, Profile};
-use rarefy::options::{Correction, CorrectionMethod, Interpolation, Mode, RenderOptions};
-use rarefy::scene_buffers::Shading;
-use rarefy::stage::{Kernel, Stage};
+use rarefy::method::options::{Correction, CorrectionMethod, Interpolation, Mode, RenderOptions};
+use rarefy::prepare::scene_buffers::Shading;
+use rarefy::scene::builtin;
 use rarefy_host_tests::frames::{Prepared, no_opencl, zoo};
 
 fn sized(width: u32, height: u32) -> RenderOptions {
@@ -290,7 +290,7 @@ fn the_device_lays_structs_out_as_the_host_does() {
     let mut device = prepared.device(true, &OpenOptions::default());
     assert_eq!(device.probe().unwrap(), expected_probe());
     // The comparison can fail.
-    let mutation = rarefy::kernels::Mutation {
+    let mutation = rarefy::device::kernels::Mutation {
         file: "types.h".into(),
         from: "  uint depth_limit;".into(),
         to: "  uint inserted; uint depth_limit;".into(),

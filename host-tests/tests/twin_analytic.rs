@@ -3,12 +3,12 @@
 #![allow(clippy::unwrap_used)]
 
 use glam::{Vec2, Vec3};
-use rarefy::builtin;
+use rarefy::device::twin::shade::sample_texture;
+use rarefy::device::twin::trace::fresnel;
 use rarefy::layout::{NO_OBJECT, PLANE_OBJECT, SURFACE_MIRROR};
-use rarefy::options::Mode;
+use rarefy::method::options::Mode;
+use rarefy::scene::builtin;
 use rarefy::scene::{Material, Scene, Surface};
-use rarefy::twin::shade::sample_texture;
-use rarefy::twin::trace::fresnel;
 use rarefy_host_tests::fixtures::*;
 
 const RED: Vec3 = Vec3::new(0.9, 0.05, 0.1);

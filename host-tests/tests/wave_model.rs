@@ -2,13 +2,13 @@
 //! The wave model says the same of a frame on every back end, and profiles do not change the picture.
 #![allow(clippy::unwrap_used, missing_docs)]
 
-use rarefy::builtin;
-use rarefy::compare::wave_model;
+use rarefy::analysis::compare::wave_model;
+use rarefy::device::profiles::Profile;
+use rarefy::device::stage::Stage;
 use rarefy::layout::Traversal;
-use rarefy::options::{Mode, RenderOptions};
-use rarefy::profiles::Profile;
-use rarefy::renderer::{DeviceChoice, Keep, Renderer, RendererOptions};
-use rarefy::stage::Stage;
+use rarefy::method::options::{Mode, RenderOptions};
+use rarefy::render::renderer::{DeviceChoice, Keep, Renderer, RendererOptions};
+use rarefy::scene::builtin;
 use rarefy_host_tests::frames::{no_opencl, walking_by};
 
 fn renderer(device: DeviceChoice, profile: Option<Profile>) -> Renderer {
@@ -52,7 +52,7 @@ fn both_back_ends_and_profiles_agree() {
     }
     assert!(phone.full[0].lanes > expected.full[0].lanes);
     // Negative control: another frame is another model.
-    let other = RenderOptions { correction: rarefy::options::Correction::Off, ..options() };
+    let other = RenderOptions { correction: rarefy::method::options::Correction::Off, ..options() };
     assert_ne!(wave_model(&mut twin, &other).unwrap(), expected);
 }
 

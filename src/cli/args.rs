@@ -4,10 +4,10 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use rarefy::options::{Correction, CorrectionMethod, Interpolation, Mode, RenderOptions, Test};
-use rarefy::profiles::Profile;
-use rarefy::renderer::{DeviceChoice, RendererOptions};
-use rarefy::scene_buffers::Shading;
+use rarefy::device::profiles::Profile;
+use rarefy::method::options::{Correction, CorrectionMethod, Interpolation, Mode, RenderOptions, Test};
+use rarefy::prepare::scene_buffers::Shading;
+use rarefy::render::renderer::{DeviceChoice, RendererOptions};
 use rarefy::{Error, Result};
 
 /// A ray tracer that traces a quarter to a third of the pixels and rebuilds the rest.

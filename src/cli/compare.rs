@@ -3,15 +3,16 @@
 
 use std::path::Path;
 
-use rarefy::compare::{Comparison, compare, wave_model};
-use rarefy::layers;
-use rarefy::metrics::{CUSTOMARY_GAIN, Rgb8, difference_picture};
-use rarefy::options::{Mode, RenderOptions};
-use rarefy::picture::write_png;
-use rarefy::renderer::Renderer;
-use rarefy::stage::Stage;
-use rarefy::wave_model::{StageCost, WAVES, WaveModel};
-use rarefy::{Cancel, Error, Result, report};
+use rarefy::analysis::compare::{Comparison, compare, wave_model};
+use rarefy::analysis::layers;
+use rarefy::analysis::metrics::{CUSTOMARY_GAIN, Rgb8, difference_picture};
+use rarefy::analysis::report;
+use rarefy::analysis::wave_model::{StageCost, WAVES, WaveModel};
+use rarefy::device::stage::Stage;
+use rarefy::method::options::{Mode, RenderOptions};
+use rarefy::render::picture::write_png;
+use rarefy::render::renderer::Renderer;
+use rarefy::{Cancel, Error, Result};
 
 use super::args::CompareArgs;
 use super::interrupt::Interrupt;

@@ -2,11 +2,11 @@
 //! `rarefy devices`.
 
 use rarefy::Result;
-use rarefy::backend::opencl::{scan_group, work_group};
-use rarefy::opencl::{DeviceFound, Limits, Profile, discover};
-use rarefy::profiles::MemoryPath;
-use rarefy::renderer::DEFAULT_BUDGET_BYTES;
-use rarefy::stage::{Kernel, Stage};
+use rarefy::device::opencl::executor::{scan_group, work_group};
+use rarefy::device::opencl::{DeviceFound, Limits, Profile, discover};
+use rarefy::device::profiles::MemoryPath;
+use rarefy::device::stage::{Kernel, Stage};
+use rarefy::render::renderer::DEFAULT_BUDGET_BYTES;
 
 use super::args::{DevicesArgs, profile};
 use super::output::{say, write_json};

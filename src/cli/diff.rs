@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! `rarefy diff`.
 
-use rarefy::metrics::{CUSTOMARY_GAIN, Rgb8, compare, difference_picture};
-use rarefy::picture::{read_rgb8, write_png};
+use rarefy::analysis::metrics::{CUSTOMARY_GAIN, Rgb8, compare, difference_picture};
+use rarefy::render::picture::{read_rgb8, write_png};
 use rarefy::{Error, Result};
 use serde_json::json;
 

@@ -4,7 +4,7 @@
 use std::io::Write;
 use std::path::Path;
 
-use rarefy::picture::write_text_whole;
+use rarefy::render::picture::write_text_whole;
 use rarefy::{Error, Result};
 use serde_json::Value;
 

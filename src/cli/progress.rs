@@ -7,8 +7,9 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use rarefy::monitor::{Event, Monitor};
-use rarefy::renderer::{Renderer, RendererOptions};
-use rarefy::{Result, Scene, builtin, scene};
+use rarefy::render::renderer::{Renderer, RendererOptions};
+use rarefy::scene::{self, builtin};
+use rarefy::{Result, Scene};
 
 use super::interrupt::Interrupt;
 use super::output::warn_all;

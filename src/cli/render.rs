@@ -3,11 +3,12 @@
 
 use std::path::PathBuf;
 
-use rarefy::layers::{self, Layer};
-use rarefy::options::Mode;
-use rarefy::picture::write_png;
-use rarefy::renderer::Keep;
-use rarefy::{Error, Result, report};
+use rarefy::analysis::layers::{self, Layer};
+use rarefy::analysis::report;
+use rarefy::method::options::Mode;
+use rarefy::render::picture::write_png;
+use rarefy::render::renderer::Keep;
+use rarefy::{Error, Result};
 
 use super::args::{ModeArg, RenderArgs};
 use super::interrupt::Interrupt;

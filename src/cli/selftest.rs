@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! `rarefy selftest`.
 
-use rarefy::renderer::RendererOptions;
-use rarefy::stage::Stage;
-use rarefy::{Error, Result, selftest};
+use rarefy::device::stage::Stage;
+use rarefy::render::renderer::RendererOptions;
+use rarefy::selftest::full as selftest;
+use rarefy::{Error, Result};
 
 use super::args::{SelftestArgs, profile};
 use super::output::say;

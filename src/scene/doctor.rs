@@ -3,7 +3,7 @@
 //!
 //! The doctor reads a finished [`Scene`], so it serves built-in scenes as well as loaded ones.
 
-use super::fit::Extents;
+use super::import::fit::Extents;
 use super::{Material, Scene};
 use crate::math::{cross, dot, unpack_normal};
 
@@ -74,7 +74,7 @@ fn attributes(scene: &Scene, tell: Tell) {
     let total = scene.triangles.len();
     if notes.triangles_without_normals > 0 {
         let share = percent(notes.triangles_without_normals, total);
-        let crease = super::normals::CREASE_DEGREES;
+        let crease = super::import::normals::CREASE_DEGREES;
         let message = format!("{share} triangles have no normals; computed with a crease angle of {crease} degrees");
         tell(Severity::Note, "normals", message);
     }

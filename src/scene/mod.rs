@@ -2,28 +2,18 @@
 //! What is drawn: triangles, objects, materials, textures, and the view (camera, lights, environment).
 //!
 //! A [`Scene`] is plain data in scene units, valid by construction: every index is in range, every number is finite,
-//! and it has at least one triangle with an area. [`load()`] makes one from files; [`crate::builtin`] from parameters.
+//! and it has at least one triangle with an area. [`load()`] makes one from files; [`crate::scene::builtin`] from parameters.
 
-mod assemble;
+pub mod builtin;
 pub mod doctor;
-mod fit;
-mod lines;
-mod load;
-mod locate;
-mod mtl;
-mod normals;
-mod obj;
-mod texture;
-mod triangulate;
-mod view;
+mod import;
 
 use glam::{Vec2, Vec3};
 
-pub use load::load;
-pub(crate) use view::complete as complete_view;
+pub(crate) use import::complete_view;
+pub use import::load;
 
-/// Object id of "no hit": an object of its own (paper section 3, `OID`).
-pub const NO_OBJECT: u32 = u32::MAX;
+pub use crate::layout::NO_OBJECT;
 
 /// Most lights a scene may have: one bit each in a 32-bit word of shadow flags.
 pub const MAX_LIGHTS: usize = 32;

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! The one door to OpenCL: nothing else in this crate calls it.
+//!
+//! [`open`] finds the library, picks a device and returns a [`Door`]. Through the door one makes [`Buffer`]s,
+//! [`Program`]s and launches. It knows the device's limits (or those of a [`Profile`], which a desktop obeys like the
+//! phone would), accounts for memory, splits long launches into slices, and measures them.
+
+mod buffer;
+pub mod build_log;
+mod cache;
+pub mod codes;
+mod discover;
+mod door;
+pub mod executor;
+mod faults;
+mod handle;
+mod launch;
+pub mod library;
+mod limits;
+mod program;
+mod queries;
+mod slices;
+mod timing;
+
+pub use buffer::{AnyBuffer, Buffer};
+pub use cache::CacheFolder;
+pub use discover::{DeviceFound, DeviceInfo, DeviceKind, Discovery, discover};
+pub use door::{Door, MemoryUse, OpenOptions, open, open_with};
+pub use faults::Faults;
+pub use launch::{Arg, Launch};
+pub use limits::Limits;
+pub use program::{Kernel, Program, ProgramSource};
+
+pub use crate::device::profiles::Profile;
+pub(crate) use queries::{Kind, QUERIES, Query};

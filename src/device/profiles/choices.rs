@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! What suits a device: shapes and variants that the pipeline would otherwise have to guess.
+
+use serde_json::{Map, Value};
+
+use super::{Certainty, Entry, bad, entry};
+use crate::Result;
+pub use crate::layout::Traversal;
+
+/// Where nodes and triangles lie in device memory.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum MemoryPath {
+    /// In buffers.
+    #[default]
+    Buffers,
+    /// In images, which many phones cache closer to the arithmetic.
+    Images,
+}
+
+impl MemoryPath {
+    /// The word that stands for it in a profile.
+    pub fn name(self) -> &'static str {
+        MEMORY_PATHS[self as usize].0
+    }
+}
+
+/// The choices of a profile.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Choices {
+    entries: Vec<(&'static str, Entry)>,
+}
+
+const KEYS: [&str; 5] = ["work_group", "memory_path", "traversal", "lanes", "slice_ms"];
+const MEMORY_PATHS: [(&str, MemoryPath); 2] = [("buffers", MemoryPath::Buffers), ("images", MemoryPath::Images)];
+
+impl Choices {
+    /// The shape of a stage's work-groups, width then height, in work-items: 8x8 where the profile says nothing.
+    pub fn work_group(&self, stage: &str) -> [usize; 2] {
+        let shapes = self.value("work_group");
+        let shape = shapes.and_then(|shapes| shapes.get(stage).or_else(|| shapes.get("default")));
+        let side = |axis: usize| shape.and_then(|shape| usize::try_from(shape.get(axis)?.as_u64()?).ok());
+        match (side(0), side(1)) {
+            (Some(width), Some(height)) => [width, height],
+            _ => [8, 8],
+        }
+    }
+
+    /// Where nodes and triangles lie.
+    pub fn memory_path(&self) -> MemoryPath {
+        self.word(&MEMORY_PATHS, "memory_path")
+    }
+
+    /// How kernels walk the kd-tree.
+    pub fn traversal(&self) -> Traversal {
+        self.word(&Traversal::NAMES, "traversal")
+    }
+
+    /// Rays per work-item: 1 where the profile says nothing.
+    pub fn lanes(&self) -> u32 {
+        self.value("lanes").and_then(Value::as_u64).and_then(|lanes| u32::try_from(lanes).ok()).unwrap_or(1)
+    }
+
+    /// The longest that one enqueue should take, in milliseconds.
+    pub fn slice_ms(&self) -> Option<f64> {
+        self.value("slice_ms").and_then(Value::as_f64)
+    }
+
+    /// All entries with their evidence, in the file's order.
+    pub fn entries(&self) -> impl Iterator<Item = (&'static str, &Entry)> {
+        self.entries.iter().map(|(key, entry)| (*key, entry))
+    }
+
+    fn value(&self, key: &str) -> Option<&Value> {
+        self.entries.iter().find(|(known, _)| *known == key).map(|(_, entry)| &entry.value)
+    }
+
+    fn word<T: Copy + Default>(&self, words: &[(&str, T)], key: &str) -> T {
+        let word = self.value(key).and_then(Value::as_str);
+        words.iter().find(|(name, _)| Some(*name) == word).map(|(_, value)| *value).unwrap_or_default()
+    }
+
+    /// The choices for a device that no profile describes.
+    pub(crate) fn for_device(gpu: bool, slice_ms: Option<f64>) -> Self {
+        let make = |value: Value| Entry {
+            value,
+            certainty: Certainty::Inferred,
+            source: "default for this type of device".into(),
+            note: String::new(),
+        };
+        let mut entries = vec![
+            ("work_group", make(serde_json::json!({ "default": [8, 8] }))),
+            ("memory_path", make("buffers".into())),
+            ("traversal", make(if gpu { "short-stack" } else { "private-stack" }.into())),
+        ];
+        if let Some(ms) = slice_ms {
+            entries.push(("slice_ms", make(ms.into())));
+        }
+        Choices { entries }
+    }
+
+    pub(super) fn parse(place: &str, map: &Map<String, Value>) -> Result<Self> {
+        let mut entries = Vec::new();
+        for (key, value) in map {
+            let key = KEYS
+                .into_iter()
+                .find(|known| known == key)
+                .ok_or_else(|| bad(place, format!("unknown key `choices.{key}`; there are {}", KEYS.join(", "))))?;
+            entries.push((key, entry(place, &format!("choices.{key}"), value, |value| check(key, value))?));
+        }
+        Ok(Choices { entries })
+    }
+
+    pub(super) fn to_json(&self) -> Value {
+        Value::Object(self.entries.iter().map(|(key, entry)| (key.to_string(), entry.to_json())).collect())
+    }
+}
+
+fn check(key: &str, value: &Value) -> std::result::Result<(), &'static str> {
+    let word = |names: &[&str]| value.as_str().is_some_and(|text| names.contains(&text));
+    let shape = |value: &Value| {
+        let side = |value: &Value| value.as_u64().is_some_and(|side| (1..=4096).contains(&side));
+        value.as_array().is_some_and(|sides| sides.len() == 2 && sides.iter().all(side))
+    };
+    let (good, must) = match key {
+        "work_group" => (
+            value.as_object().is_some_and(|map| {
+                map.iter().all(|(stage, value)| (stage == "default" || stage.starts_with("step")) && shape(value))
+            }),
+            "an object of `default` and stages such as `step1`, each [width, height] from 1 to 4096",
+        ),
+        "memory_path" => (word(&MEMORY_PATHS.map(|(name, _)| name)), "`buffers` or `images`"),
+        "traversal" => (word(&Traversal::NAMES.map(|(name, _)| name)), "`private-stack`, `short-stack` or `stackless`"),
+        "lanes" => (value.as_u64().is_some_and(|lanes| [1, 4, 8, 16].contains(&lanes)), "1, 4, 8 or 16"),
+        _ => (
+            value.as_f64().is_some_and(|ms| (0.1..=10_000.0).contains(&ms)),
+            "a number of milliseconds from 0.1 to 10000",
+        ),
+    };
+    if good { Ok(()) } else { Err(must) }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::device::profiles::Profile;
+
+    fn with_choice(key: &str, value: &str) -> Result<Profile> {
+        let text = format!(
+            r#"{{"limits":{{}},"choices":{{"{key}":{{"value":{value},"certainty":"inferred","source":"-"}}}}}}"#
+        );
+        Profile::from_json("p", &text)
+    }
+
+    #[test]
+    fn choices_are_read_per_stage() {
+        let profile = with_choice("work_group", r#"{"default":[8,8],"step2a":[64,1]}"#).unwrap();
+        assert_eq!(profile.choices().work_group("step1"), [8, 8]);
+        assert_eq!(profile.choices().work_group("step2a"), [64, 1]);
+        assert_eq!(with_choice("traversal", "\"stackless\"").unwrap().choices().traversal(), Traversal::Stackless);
+        assert_eq!(with_choice("memory_path", "\"images\"").unwrap().choices().memory_path(), MemoryPath::Images);
+    }
+
+    #[test]
+    fn words_are_those_of_the_files() {
+        assert!(MEMORY_PATHS.iter().all(|(name, value)| value.name() == *name));
+    }
+
+    #[test]
+    fn wrong_choices_are_refused() {
+        for (key, value) in [
+            ("work_group", r#"{"default":[8,0]}"#),
+            ("work_group", r#"{"stage1":[8,8]}"#),
+            ("work_group", "[8,8]"),
+            ("memory_path", "\"cloud\""),
+            ("traversal", "1"),
+            ("lanes", "3"),
+            ("slice_ms", "-5"),
+            ("slice_ms", "1e9"),
+            ("slicems", "5"),
+        ] {
+            let message = with_choice(key, value).unwrap_err().to_string();
+            assert!(message.contains(&format!("choices.{key}")), "{message}");
+        }
+    }
+}

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! What the host keeps of a frame's windows: colours, planes, sums of counters.
+
+use std::collections::BTreeMap;
+
+use crate::device::backend::{Backend, FrameBuffer};
+use crate::device::twin::planes::{color_index, plane_index};
+use crate::error::Result;
+use crate::layout::*;
+use crate::method::frame::{Keep, RayCounts, WorkCounts};
+use crate::method::options::Test;
+
+/// Rays, work and failed tests, summed over windows.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct CounterSums {
+    /// Every counter (`COUNTER_*`).
+    pub counters: [u64; COUNTER_COUNT as usize],
+    /// Rays from the eye.
+    pub primary: u64,
+    /// Traversal work of base, traced and corrected pixels.
+    pub work_by_class: [u64; 3],
+    /// Failed tests, in the order of [`Test::ALL`].
+    pub failed_tests: [u64; 7],
+}
+
+impl CounterSums {
+    /// The rays by kind.
+    pub fn rays(&self) -> RayCounts {
+        RayCounts {
+            primary: self.primary,
+            shadow: self.counters[COUNTER_SHADOW_RAYS as usize],
+            reflection: self.counters[COUNTER_REFLECTION_RAYS as usize],
+            refraction: self.counters[COUNTER_REFRACTION_RAYS as usize],
+        }
+    }
+
+    /// The work.
+    pub fn work(&self) -> WorkCounts {
+        WorkCounts {
+            traversal_steps: self.counters[COUNTER_TRAVERSAL_STEPS as usize],
+            triangle_tests: self.counters[COUNTER_TRIANGLE_TESTS as usize],
+            shaded_pixels: self.counters[COUNTER_SHADED as usize],
+        }
+    }
+}
+
+/// Which pixels of a window are new to the host.
+#[derive(Debug, Clone, Copy)]
+pub enum Taken<'a> {
+    /// The interior: the window was drawn for the first time.
+    Interior,
+    /// These: the window was drawn again to trace them.
+    Pixels(&'a [u32]),
+}
+
+/// A frame's samples and planes on the host, row-major over the whole frame.
+#[derive(Debug)]
+pub struct Collected {
+    width: u32,
+    /// The colour of every sample.
+    pub colors: Vec<u32>,
+    /// Planes by number: attribute planes, then counter planes from [`PLANE_COUNT`] on.
+    pub planes: BTreeMap<u32, Vec<u32>>,
+    /// Sums of the counters.
+    pub sums: CounterSums,
+}
+
+impl Collected {
+    /// Room for a frame of which `keep` is wanted.
+    pub fn new(frame: &FrameParams, keep: Keep) -> Self {
+        let samples = frame.width as usize * frame.height as usize;
+        let planes = (0..PLANE_COUNT + COUNTER_COUNT).filter(|&plane| keep.has(plane));
+        Collected {
+            width: frame.width,
+            colors: vec![0; samples],
+            planes: planes.map(|plane| (plane, vec![0; samples])).collect(),
+            sums: CounterSums::default(),
+        }
+    }
+
+    /// Room for planes alone.
+    pub(crate) fn without_colors(frame: &FrameParams) -> Self {
+        let (colors, planes) = (Vec::new(), BTreeMap::new());
+        Collected { width: frame.width, colors, planes, sums: CounterSums::default() }
+    }
+
+    /// Takes over a window that has just been drawn.
+    ///
+    /// # Errors
+    /// A failing read.
+    pub fn take(&mut self, backend: &mut dyn Backend, frame: &FrameParams, taken: Taken) -> Result<()> {
+        let rows = frame.interior_begin..frame.interior_end;
+        let words = backend.read(FrameBuffer::Color, window_words(frame, rows.clone()))?;
+        let first = color_index(frame, 0, rows.start);
+        copy(&mut self.colors, self.width, frame, taken, |x, y| words[(color_index(frame, x, y) - first) as usize]);
+        for (&plane, target) in &mut self.planes {
+            backend.monitor().check()?;
+            let words = read_plane(backend, frame, plane)?;
+            copy(target, self.width, frame, taken, |x, y| words[plane_index(frame, x, y) as usize]);
+        }
+        Ok(())
+    }
+}
+
+fn copy(target: &mut [u32], width: u32, frame: &FrameParams, taken: Taken, word: impl Fn(u32, u32) -> u32) {
+    let mut put = |x: u32, y: u32| target[y as usize * width as usize + x as usize] = word(x, y);
+    match taken {
+        Taken::Interior => {
+            (frame.interior_begin..frame.interior_end).for_each(|y| (0..frame.width).for_each(|x| put(x, y)));
+        }
+        Taken::Pixels(pixels) => pixels.iter().for_each(|&pixel| put(pixel & 0xffff, pixel >> 16)),
+    }
+}
+
+/// Where rows of the window lie in the colour buffer.
+fn window_words(frame: &FrameParams, rows: std::ops::Range<u32>) -> std::ops::Range<usize> {
+    color_index(frame, 0, rows.start) as usize..color_index(frame, 0, rows.end) as usize
+}
+
+/// An attribute plane, or from [`PLANE_COUNT`] on a counter plane, of the window in a back end's buffers.
+///
+/// # Errors
+/// A failing read.
+pub fn read_plane(backend: &mut dyn Backend, frame: &FrameParams, plane: u32) -> Result<Vec<u32>> {
+    let pitch = frame.plane_pitch as usize;
+    let (buffer, start) = match plane.checked_sub(PLANE_COUNT) {
+        Some(counter) => (FrameBuffer::Counters, counter as usize * pitch),
+        None => (FrameBuffer::Attributes, plane as usize * pitch),
+    };
+    backend.read(buffer, start..start + pitch)
+}
+
+/// Adds up the counters of the window in a back end's buffers. `first_time`: failed tests count, too.
+///
+/// # Errors
+/// A failing read.
+pub fn sum_counters(
+    backend: &mut dyn Backend,
+    frame: &FrameParams,
+    sums: &mut CounterSums,
+    first_time: bool,
+) -> Result<()> {
+    let classes = match frame.block {
+        1 => None,
+        _ => Some(read_plane(backend, frame, PLANE_CLASS)?),
+    };
+    for counter in 0..COUNTER_COUNT {
+        let words = read_plane(backend, frame, PLANE_COUNT + counter)?;
+        let is_traversal = matches!(counter, COUNTER_TRAVERSAL_STEPS | COUNTER_TRIANGLE_TESTS);
+        for y in frame.window_begin..frame.window_end {
+            backend.monitor().check()?;
+            for x in 0..frame.width {
+                let at = plane_index(frame, x, y) as usize;
+                let count = u64::from(words[at]);
+                sums.counters[counter as usize] += count;
+                let class = classes.as_ref().map_or(CLASS_BASE, |classes| classes[at] & CLASS_MASK);
+                if let (true, Some(slot)) = (is_traversal, class_slot(class)) {
+                    sums.work_by_class[slot] += count;
+                }
+            }
+        }
+    }
+    if let (true, Some(classes)) = (first_time, classes) {
+        for y in frame.interior_begin..frame.interior_end {
+            backend.monitor().check()?;
+            for x in 0..frame.width {
+                let class = classes[plane_index(frame, x, y) as usize];
+                for (test, sum) in Test::ALL.into_iter().zip(&mut sums.failed_tests) {
+                    *sum += u64::from(class & test.fail_bit() != 0);
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+fn class_slot(class: u32) -> Option<usize> {
+    match class {
+        CLASS_BASE => Some(0),
+        CLASS_TRACED => Some(1),
+        CLASS_CORRECTED | CLASS_CONFIRMED => Some(2),
+        _ => None,
+    }
+}

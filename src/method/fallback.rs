@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Never slower than full: where the method does not pay, following frames are traced in full.
+
+use crate::method::options::RenderOptions;
+use crate::method::pipeline::PixelCounts;
+
+/// What a packed ray costs, in average rays: packing puts neighbours side by side, but the pixels that need rays are the
+/// hard ones.
+const PACKED_RAY_COST: f64 = 1.5;
+/// What checking, interpolating and packing cost per adaptive pixel, in average rays.
+const CHECK_COST: f64 = 0.06;
+/// After this many full frames the method gets another try: the view may have become easier.
+const FRAMES_BEFORE_RETRY: u32 = 30;
+
+/// Decides from each adaptive frame's own counters whether the following ones should be full.
+///
+/// An adaptive frame is taken to cost `base + 1.5 (traced + corrected) + 0.06 (all - base)` average rays; if that is
+/// not less than one ray a pixel, the next 30 frames with the same options are traced in full.
+#[derive(Debug, Clone, Default)]
+pub struct Fallback {
+    options: Option<RenderOptions>,
+    full_frames_left: u32,
+}
+
+impl Fallback {
+    /// Should this frame be full? Counts down.
+    pub fn choose_full(&mut self, options: &RenderOptions) -> bool {
+        if self.full_frames_left == 0 || self.options.as_ref() != Some(options) {
+            return false;
+        }
+        self.full_frames_left -= 1;
+        true
+    }
+
+    /// Takes in what an adaptive frame did.
+    pub fn learn(&mut self, options: &RenderOptions, pixels: &PixelCounts) {
+        self.options = Some(options.clone());
+        self.full_frames_left = if modelled_cost(pixels) >= 1.0 { FRAMES_BEFORE_RETRY } else { 0 };
+    }
+}
+
+/// Modelled cost of an adaptive frame over that of a full one.
+pub fn modelled_cost(pixels: &PixelCounts) -> f64 {
+    let all = (pixels.base + pixels.traced + pixels.interpolated + pixels.corrected) as f64;
+    let packed = (pixels.traced + pixels.corrected) as f64;
+    let adaptive = all - pixels.base as f64;
+    (pixels.base as f64 + PACKED_RAY_COST * packed + CHECK_COST * adaptive) / all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_thicket_falls_back_and_a_wall_does_not() {
+        let options = RenderOptions::default();
+        let mut fallback = Fallback::default();
+        fallback.learn(&options, &PixelCounts { base: 25, traced: 6, interpolated: 68, corrected: 1 });
+        assert!(!fallback.choose_full(&options));
+        fallback.learn(&options, &PixelCounts { base: 25, traced: 60, interpolated: 10, corrected: 5 });
+        for _ in 0..FRAMES_BEFORE_RETRY {
+            assert!(fallback.choose_full(&options));
+        }
+        assert!(!fallback.choose_full(&options), "the method gets another try");
+    }
+
+    #[test]
+    fn other_options_start_afresh() {
+        let options = RenderOptions::default();
+        let mut fallback = Fallback::default();
+        fallback.learn(&options, &PixelCounts { base: 25, traced: 75, interpolated: 0, corrected: 0 });
+        assert!(!fallback.choose_full(&RenderOptions { width: 512, ..options.clone() }));
+        assert!(fallback.choose_full(&options));
+    }
+}

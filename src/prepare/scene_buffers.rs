@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! The scene as the kernels read it: flat arrays, ready for upload.
+
+use glam::Vec3;
+
+use crate::error::{Error, Result};
+use crate::layout::{self, *};
+use crate::monitor::Monitor;
+use crate::prepare::kdtree::KdTree;
+use crate::scene::{Scene, Surface};
+
+/// By which rules surfaces are shaded.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Shading {
+    /// Everything the scene asks for.
+    #[default]
+    Full,
+    /// The rules of the speed anchor: no textures or glass, geometric normals, listed mirrors at 0.8 / 0.2, two
+    /// reflections, ambient 0.1, black background.
+    Anchor,
+}
+
+/// Every array a ray needs (`SCENE_PARAMS` of `kernels/types.h`, without the frame's own parameters).
+#[derive(Debug, Clone)]
+pub struct SceneBuffers {
+    /// The kd-tree with its leaf entries and box.
+    pub tree: KdTree,
+    /// Lights; never empty (a dark one stands in).
+    pub lights: Vec<layout::Light>,
+    /// Number of real lights.
+    pub light_count: u32,
+    /// Triangles for traversal.
+    pub triangles: Vec<Triangle>,
+    /// Triangles for shading.
+    pub triangle_shading: Vec<TriangleShading>,
+    /// Materials.
+    pub materials: Vec<layout::Material>,
+    /// The material of each object.
+    pub object_materials: Vec<u32>,
+    /// Where each texture's texels lie; never empty.
+    pub textures: Vec<layout::Texture>,
+    /// Texels of all textures; never empty.
+    pub texels: Vec<u32>,
+    /// sRGB tables.
+    pub tables: Vec<u32>,
+    /// Shading rules that the arrays are made for.
+    pub shading: Shading,
+    /// Offset of secondary and shadow rays, scene units.
+    pub epsilon: f32,
+}
+
+/// Triangles that are flattened before it is asked whether the work is to end.
+const TRIANGLES_AT_ONCE: usize = 1 << 16;
+
+fn float4(v: Vec3, w: f32) -> [f32; 4] {
+    [v.x, v.y, v.z, w]
+}
+
+impl SceneBuffers {
+    /// Flattens `scene` with its `tree`.
+    ///
+    /// # Errors
+    /// [`Error::LimitExceeded`] if the texels do not fit 32-bit offsets.
+    pub fn new(scene: &Scene, tree: KdTree, shading: Shading) -> Result<Self> {
+        SceneBuffers::watched(scene, tree, shading, &Monitor::default())
+    }
+
+    /// As [`SceneBuffers::new`]; `monitor` can end it.
+    ///
+    /// # Errors
+    /// As for [`SceneBuffers::new`]; [`Error::Cancelled`].
+    pub fn watched(scene: &Scene, tree: KdTree, shading: Shading, monitor: &Monitor) -> Result<Self> {
+        monitor.check()?;
+        let anchor = shading == Shading::Anchor;
+        let (textures, texels) = flatten_textures(scene)?;
+        let mut lights: Vec<_> = scene
+            .view
+            .lights
+            .iter()
+            .map(|l| layout::Light { position: float4(l.position, 0.0), intensity: float4(l.intensity, 0.0) })
+            .collect();
+        let light_count = lights.len() as u32;
+        if lights.is_empty() {
+            lights.push(layout::Light { position: [0.0; 4], intensity: [0.0; 4] });
+        }
+        let materials: Vec<_> = scene.materials.iter().map(|m| flatten_material(m, anchor)).collect();
+        let object_materials = scene.objects.iter().map(|o| o.material).collect();
+        let mut triangles = Vec::with_capacity(scene.triangles.len());
+        let mut triangle_shading = Vec::with_capacity(scene.triangles.len());
+        for (id, corners) in scene.triangles.iter().enumerate() {
+            if id % TRIANGLES_AT_ONCE == 0 {
+                monitor.check()?;
+            }
+            let [a, b, c] = corners.map(|i| scene.positions[i as usize]);
+            let object = scene.triangle_objects[id];
+            let material = scene.objects[object as usize].material;
+            let flags = if anchor { 0 } else { triangle_flags(&scene.materials[material as usize]) };
+            triangles.push(Triangle {
+                corner: float4(a, f32::from_bits(flags)),
+                edge1: float4(b - a, 0.0),
+                edge2: float4(c - a, 0.0),
+            });
+            let [t0, t1, t2] = scene.corner_texcoords[id];
+            triangle_shading.push(TriangleShading {
+                normals: scene.corner_normals[id],
+                object,
+                texcoords: [t0.x, t0.y, t1.x, t1.y, t2.x, t2.y],
+                material,
+                pad0: 0,
+            });
+        }
+        let epsilon = if anchor { 1.0e-4 * diagonal(scene) } else { 1.0e-5 * scene.view.extent };
+        Ok(SceneBuffers {
+            tree,
+            lights,
+            light_count,
+            triangles,
+            triangle_shading,
+            materials,
+            object_materials,
+            textures,
+            texels,
+            tables: layout::tables(),
+            shading,
+            epsilon,
+        })
+    }
+
+    /// Bytes that an upload takes.
+    pub fn bytes(&self) -> u64 {
+        let of = |bytes: usize| bytes as u64;
+        of(size_of_val(&self.tree.nodes[..]))
+            + of(size_of_val(&self.tree.leaf_triangles[..]))
+            + of(size_of_val(&self.triangles[..]))
+            + of(size_of_val(&self.triangle_shading[..]))
+            + of(size_of_val(&self.materials[..]))
+            + of(size_of_val(&self.object_materials[..]))
+            + of(size_of_val(&self.textures[..]))
+            + of(size_of_val(&self.texels[..]))
+            + of(size_of_val(&self.tables[..]))
+    }
+}
+
+fn diagonal(scene: &Scene) -> f32 {
+    let (mut lo, mut hi) = (Vec3::splat(f32::MAX), Vec3::splat(f32::MIN));
+    for p in &scene.positions {
+        lo = lo.min(*p);
+        hi = hi.max(*p);
+    }
+    (hi - lo).length()
+}
+
+fn triangle_flags(material: &crate::scene::Material) -> u32 {
+    let cutout = if material.cutout_texture.is_some() { TRIANGLE_CUTOUT } else { 0 };
+    let glass = matches!(material.surface, Surface::Glass | Surface::ThinGlass);
+    cutout | if glass { TRIANGLE_NO_SHADOW } else { 0 }
+}
+
+fn flatten_material(m: &crate::scene::Material, anchor: bool) -> layout::Material {
+    let surface = match m.surface {
+        Surface::Opaque => SURFACE_OPAQUE,
+        Surface::Mirror => SURFACE_MIRROR,
+        Surface::Glass | Surface::ThinGlass if anchor => SURFACE_OPAQUE,
+        Surface::Glass => SURFACE_GLASS,
+        Surface::ThinGlass => SURFACE_THIN_GLASS,
+    };
+    // Own colour: Kd (1 - max Ks) on a mirror, none on glass.
+    let (reflectance, own) = match (surface, anchor) {
+        (SURFACE_MIRROR, true) => (Vec3::splat(0.8), 1.0 - 0.8),
+        (SURFACE_MIRROR, false) => (m.specular, (1.0 - m.specular.max_element()).clamp(0.0, 1.0)),
+        (SURFACE_GLASS | SURFACE_THIN_GLASS, _) => (Vec3::ZERO, 0.0),
+        _ => (Vec3::ZERO, 1.0),
+    };
+    let texture = |t: Option<u32>| if anchor { NO_TEXTURE } else { t.unwrap_or(NO_TEXTURE) };
+    layout::Material {
+        diffuse: float4(m.diffuse, m.shininess),
+        specular: float4(m.specular, m.index_of_refraction),
+        reflectance: float4(reflectance, own),
+        transmission: float4(m.transmission, 0.0),
+        surface,
+        diffuse_texture: texture(m.diffuse_texture),
+        cutout_texture: texture(m.cutout_texture),
+        pad0: 0,
+    }
+}
+
+/// Offsets have 32 bits, and a vector at most half of the address space, whose last byte is `last_address`.
+fn check_texels(name: &str, total: u64, last_address: u64) -> Result<()> {
+    let most = (1u64 << 30).min(last_address / 8);
+    if total < most {
+        return Ok(());
+    }
+    Err(Error::LimitExceeded {
+        what: format!("the textures of {name}"),
+        limit: "texels".into(),
+        wanted: format!("{total} texels"),
+        allowed: format!("{} texels", most - 1),
+        remedy: "use smaller textures".into(),
+    })
+}
+
+fn flatten_textures(scene: &Scene) -> Result<(Vec<layout::Texture>, Vec<u32>)> {
+    let total: u64 = scene.textures.iter().map(|t| t.texels.len() as u64).sum();
+    check_texels(&scene.name, total, usize::MAX as u64)?;
+    let mut textures = Vec::with_capacity(scene.textures.len().max(1));
+    let mut texels = Vec::with_capacity(total as usize);
+    for t in &scene.textures {
+        textures.push(layout::Texture { offset: texels.len() as u32, width: t.width, height: t.height, pad0: 0 });
+        texels.extend_from_slice(&t.texels);
+    }
+    if textures.is_empty() {
+        textures.push(layout::Texture { offset: 0, width: 1, height: 1, pad0: 0 });
+        texels.push(0xffff_ffff);
+    }
+    Ok((textures, texels))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn texels_fit_offsets_and_the_address_space() {
+        let (bits32, bits64) = (u64::from(u32::MAX), u64::MAX);
+        for (last_address, most) in [(bits64, (1u64 << 30) - 1), (bits32, (1 << 29) - 2)] {
+            assert!(check_texels("t", most, last_address).is_ok());
+            assert!(4 * most <= last_address / 2, "a vector of {most} texels");
+            for total in [most + 1, 1 << 32, u64::MAX] {
+                let message = check_texels("t", total, last_address).unwrap_err().to_string();
+                assert!(message.contains(&format!("allows {most} texels")), "{message}");
+            }
+        }
+    }
+}

@@ -1,0 +1,330 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! The café's materials and the pictures on them.
+
+use super::Parameters;
+use crate::scene::Surface;
+use crate::scene::builtin::model::{Finish, Model};
+use crate::scene::builtin::paint::{Canvas, Colour, clouds, mix, noise, ramp, shade};
+
+/// Adds all materials and pictures.
+pub fn add(model: &mut Model, p: &Parameters) {
+    let white = [1.0; 3];
+    model.materials = vec![
+        Finish::glossy("floor", white, 0.12, 60.0).with_texture("floor.png"),
+        Finish::matte("plaster", [0.80, 0.70, 0.53]),
+        Finish::matte("ceiling", [0.80, 0.77, 0.70]),
+        Finish::glossy("panelling", [0.62, 0.82, 0.74], 0.05, 30.0).with_texture("boards.png"),
+        Finish::glossy("trim", [0.055, 0.135, 0.115], 0.08, 40.0),
+        Finish::glossy("oak", [1.0, 0.95, 0.88], 0.06, 40.0).with_texture("oak.png"),
+        Finish::glossy("walnut", [0.45, 0.36, 0.30], 0.08, 40.0).with_texture("oak.png"),
+        Finish::glossy("bentwood", [0.16, 0.055, 0.025], 0.35, 90.0),
+        Finish::glossy("cane", white, 0.02, 10.0).with_texture("cane.png"),
+        Finish::glossy("marble", white, 0.25, 160.0).with_texture("marble.png"),
+        Finish::glossy("iron", [0.025, 0.025, 0.028], 0.30, 60.0),
+        Finish::mirror("chrome", [0.20, 0.20, 0.21], [0.62, 0.62, 0.63]),
+        Finish::mirror("brass", [0.55, 0.33, 0.09], [0.50, 0.36, 0.15]),
+        Finish::mirror("mirror", [0.02; 3], [0.90, 0.92, 0.91]),
+        Finish::glossy("gilding", [0.60, 0.40, 0.12], 0.5, 50.0),
+        Finish::glossy("red-enamel", [0.52, 0.035, 0.025], 0.5, 180.0),
+        Finish::glossy("green-enamel", [0.03, 0.16, 0.12], 0.5, 160.0),
+        Finish::matte("shade-inside", [0.88, 0.84, 0.74]),
+        Finish::matte("bulb", [1.0, 0.93, 0.78]),
+        Finish::glossy("black-plastic", [0.02, 0.02, 0.02], 0.25, 60.0),
+        Finish::glossy("porcelain", [0.85, 0.84, 0.81], 0.45, 220.0),
+        Finish::glossy("coffee", [0.45, 0.25, 0.11], 0.10, 80.0),
+        Finish::glass("glass", Surface::Glass, [0.985, 0.995, 0.99]),
+        Finish { index_of_refraction: 1.45, ..Finish::glass("pane", Surface::ThinGlass, [0.98, 0.99, 0.985]) },
+        Finish::glossy("juice", [0.90, 0.36, 0.03], 0.1, 60.0),
+        Finish::glossy("tea", [0.45, 0.035, 0.05], 0.1, 60.0),
+        Finish::glossy("crust", [0.62, 0.31, 0.085], 0.18, 30.0),
+        Finish::glossy("chocolate", [0.11, 0.042, 0.020], 0.25, 50.0),
+        Finish::matte("cream", [0.86, 0.79, 0.66]),
+        Finish::glossy("cherry", [0.55, 0.015, 0.03], 0.6, 120.0),
+        Finish::matte("berry", [0.80, 0.36, 0.42]),
+        Finish::matte("terracotta", [0.50, 0.20, 0.10]),
+        Finish::matte("soil", [0.06, 0.04, 0.025]),
+        Finish::glossy("leaf", white, 0.08, 30.0).with_texture("leaf.png").with_mask("leaf_mask.png"),
+        Finish::matte("stem", [0.12, 0.20, 0.06]),
+        Finish::matte("chalkboard", white).with_texture("menu.png"),
+        Finish::matte("painting", white).with_texture("painting.png"),
+        Finish::matte("clock-face", white).with_texture("clock.png"),
+        Finish::matte("gauge", white).with_texture("clock.png"),
+        Finish::matte("street", [0.75; 3]).with_texture("street.png"),
+        Finish::matte("label", white).with_texture("label.png"),
+        Finish::glossy("bottle-green", [0.03, 0.15, 0.06], 0.5, 160.0),
+        Finish::glossy("bottle-amber", [0.36, 0.13, 0.02], 0.5, 160.0),
+        Finish::glossy("bottle-blue", [0.04, 0.11, 0.30], 0.5, 160.0),
+        Finish::glossy("bottle-clear", [0.62, 0.62, 0.56], 0.5, 160.0),
+        Finish::matte("book-red", [0.45, 0.08, 0.06]),
+        Finish::matte("book-blue", [0.07, 0.16, 0.32]),
+        Finish::matte("book-ochre", [0.60, 0.38, 0.08]),
+        Finish::matte("book-green", [0.10, 0.26, 0.12]),
+        Finish::matte("paper", [0.78, 0.74, 0.64]),
+        Finish::glossy("rose", [0.75, 0.10, 0.14], 0.05, 20.0),
+    ];
+    let s = p.texture;
+    let seed = p.seed;
+    model.add_picture("floor.png", floor(s, seed));
+    model.add_picture("boards.png", boards(s / 2, seed));
+    model.add_picture("oak.png", oak(s / 2, seed));
+    model.add_picture("cane.png", cane(s / 8));
+    model.add_picture("marble.png", marble(s / 2, seed));
+    let [leaf, mask] = leaf(s / 4);
+    model.add_picture("leaf.png", leaf);
+    model.add_picture("leaf_mask.png", mask);
+    model.add_picture("menu.png", menu(s, seed));
+    model.add_picture("painting.png", painting(s / 2, seed));
+    model.add_picture("clock.png", clock(s / 4));
+    model.add_picture("street.png", street(s, seed));
+    model.add_picture("label.png", label(s / 8));
+}
+
+/// Four tiles, two light and two dark, as checks; repeats at the borders.
+fn floor(size: u32, seed: u32) -> Canvas {
+    Canvas::new(size, size, |u, v| {
+        let (tx, ty) = ((u * 2.0).floor(), (v * 2.0).floor());
+        let (x, y) = (u * 2.0 - tx, v * 2.0 - ty);
+        let joint = x.min(y).min(1.0 - x).min(1.0 - y);
+        let dark = tx != ty;
+        let veins = clouds(u, v, 6, seed);
+        let fine = clouds(u, v, 24, seed + 1);
+        let base = if dark {
+            mix([0.16, 0.25, 0.25], [0.27, 0.36, 0.35], veins)
+        } else {
+            mix([0.80, 0.74, 0.63], [0.93, 0.88, 0.79], veins)
+        };
+        let tile = shade(base, 0.93 + 0.12 * fine);
+        mix([0.52, 0.48, 0.42], tile, ramp(0.010, 0.022, joint))
+    })
+}
+
+/// Upright boards with grooves; four boards a repeat.
+fn boards(size: u32, seed: u32) -> Canvas {
+    Canvas::new(size, size, |u, v| {
+        let board = (u * 4.0).floor();
+        let x = u * 4.0 - board;
+        let groove = ramp(0.0, 0.06, x.min(1.0 - x));
+        let tone = 0.92 + 0.16 * noise(board, 0.0, 4, seed + 2);
+        let grain = 0.93 + 0.14 * noise(u * 64.0, v * 4.0, 64, seed + 3);
+        shade([0.27, 0.42, 0.37], tone * grain * (0.45 + 0.55 * groove))
+    })
+}
+
+/// Planks of oak along u; four planks a repeat.
+fn oak(size: u32, seed: u32) -> Canvas {
+    Canvas::new(size, size, |u, v| {
+        let plank = (v * 4.0).floor();
+        let y = v * 4.0 - plank;
+        let bend = 0.10 * noise(u * 3.0, plank * 5.0, 16, seed + 4);
+        let rings = noise(u * 2.0, (v + bend * 0.25) * 64.0, 64, seed + 5);
+        let grain = noise(u * 16.0, v * 128.0, 128, seed + 6);
+        let tone = 0.86 + 0.26 * noise(plank * 3.0, 1.0, 16, seed + 7);
+        let wood = mix([0.50, 0.33, 0.19], [0.74, 0.55, 0.35], 0.6 * rings + 0.4 * grain);
+        shade(wood, tone * (0.75 + 0.25 * ramp(0.0, 0.03, y.min(1.0 - y))))
+    })
+}
+
+/// Woven cane: light strips with dark gaps.
+fn cane(size: u32) -> Canvas {
+    Canvas::new(size, size, |u, v| {
+        let strip = |t: f32| {
+            let f = t * 4.0 - (t * 4.0).floor();
+            ramp(0.0, 0.18, f.min(1.0 - f) - 0.12)
+        };
+        let (a, b) = (strip(u), strip(v));
+        mix([0.28, 0.17, 0.08], mix([0.80, 0.63, 0.38], [0.88, 0.73, 0.48], a), a.max(b))
+    })
+}
+
+/// White marble with grey veins.
+fn marble(size: u32, seed: u32) -> Canvas {
+    Canvas::new(size, size, |u, v| {
+        let warp = clouds(u, v, 3, seed + 8);
+        let fold = (clouds(u + 0.3 * warp, v + 0.2 * warp, 3, seed + 9) - 0.5).abs();
+        let thin = (clouds(u - 0.2 * warp, v + 0.4 * warp, 5, seed + 10) - 0.5).abs();
+        let vein = (1.0 - ramp(0.0, 0.07, fold)) * 0.55 + (1.0 - ramp(0.0, 0.03, thin)) * 0.30;
+        mix(shade([0.93, 0.92, 0.90], 0.95 + 0.06 * warp), [0.52, 0.53, 0.56], vein)
+    })
+}
+
+/// A leaf with veins, and the mask that cuts it out. The stalk is below.
+fn leaf(size: u32) -> [Canvas; 2] {
+    // Half the width of the leaf at height h above the stalk, both in parts of the picture.
+    let half_width = |h: f32| {
+        let t = h.clamp(0.0, 1.0);
+        0.95 * t * (1.0 - t) * (2.2 - 1.3 * t)
+    };
+    let colour = Canvas::new(size, size * 2, |u, v| {
+        let h = 1.0 - v;
+        let x = (u - 0.5).abs();
+        let f = (h - x * 0.55) * 9.0;
+        let side = f - f.floor();
+        let vein = (1.0 - ramp(0.010, 0.030, x)).max(0.55 * (1.0 - ramp(0.04, 0.14, side.min(1.0 - side))));
+        let green = mix([0.13, 0.36, 0.14], [0.30, 0.56, 0.20], h * 0.6 + x);
+        mix(green, [0.58, 0.74, 0.36], vein)
+    });
+    let mask = Canvas::new(size, size * 2, |u, v| {
+        let h = 1.0 - v;
+        let x = (u - 0.5).abs();
+        // Deep slits between the side veins, as a Swiss cheese plant has.
+        let f = (h - x * 0.55) * 4.5 + 0.5;
+        let side = f - f.floor();
+        let slit = x > 0.17 && h > 0.18 && h < 0.86 && (side - 0.5).abs() < 0.10;
+        if x < half_width(h) && !slit { [1.0; 3] } else { [0.0; 3] }
+    });
+    [colour, mask]
+}
+
+const CHALK: Colour = [0.93, 0.92, 0.86];
+
+/// The menu on the blackboard.
+fn menu(size: u32, seed: u32) -> Canvas {
+    let mut c = Canvas::new(size, size, |u, v| {
+        let wiped = clouds(u * 0.5, v, 4, seed + 12);
+        mix([0.085, 0.10, 0.095], [0.20, 0.215, 0.205], wiped * wiped)
+    });
+    let (yellow, pink, blue) = ([0.95, 0.80, 0.42], [0.93, 0.60, 0.55], [0.62, 0.82, 0.88]);
+    let heading = "CAFE";
+    let h = 0.17;
+    c.text(heading, (0.5 - 0.5 * Canvas::measure(heading, h) + 0.012, 0.23), h, 0.020, yellow, 0.35);
+    // The accent on the E.
+    c.line((0.697, 0.035), (0.735, 0.012), 0.016, yellow, 0.35);
+    // A wavy line below the heading.
+    let wave: Vec<(f32, f32)> = (0..=32)
+        .map(|i| {
+            let t = i as f32 / 32.0;
+            let saw = t * 6.0 - (t * 6.0).floor();
+            (0.14 + 0.72 * t, 0.285 + 0.06 * saw * (1.0 - saw))
+        })
+        .collect();
+    c.lines(&wave, 0.008, pink, 0.4);
+    let items =
+        [("ESPRESSO", "2.20"), ("CAPPUCCINO", "3.10"), ("TEA", "2.50"), ("CAKE", "3.80"), ("CROISSANT", "2.00")];
+    for (i, (what, price)) in items.into_iter().enumerate() {
+        let y = 0.40 + 0.089 * i as f32;
+        let h = 0.060;
+        let end = c.text(what, (0.09, y), h, 0.0105, CHALK, 0.35);
+        let start = 0.915 - Canvas::measure(price, h);
+        let mut x = end + 0.03;
+        while x < start - 0.03 {
+            c.line((x, y), (x, y), 0.008, CHALK, 0.3);
+            x += 0.028;
+        }
+        c.text(price, (start, y), h, 0.0105, yellow, 0.35);
+    }
+    // A steaming cup and a cake below.
+    let cup = [(0.20, 0.86), (0.22, 0.935), (0.25, 0.955), (0.33, 0.955), (0.36, 0.935), (0.38, 0.86), (0.20, 0.86)];
+    c.lines(&cup, 0.010, blue, 0.3);
+    c.lines(&[(0.375, 0.875), (0.42, 0.875), (0.425, 0.91), (0.36, 0.93)], 0.009, blue, 0.3);
+    c.lines(&[(0.15, 0.975), (0.44, 0.975)], 0.010, blue, 0.3);
+    for x in [0.25, 0.29, 0.33] {
+        c.lines(&[(x, 0.845), (x + 0.012, 0.832), (x - 0.006, 0.818), (x + 0.008, 0.803)], 0.007, CHALK, 0.4);
+    }
+    c.lines(&[(0.60, 0.955), (0.60, 0.89), (0.80, 0.86), (0.84, 0.89), (0.84, 0.955), (0.60, 0.955)], 0.010, pink, 0.3);
+    c.lines(&[(0.60, 0.89), (0.84, 0.89)], 0.009, pink, 0.3);
+    c.lines(&[(0.61, 0.922), (0.83, 0.922)], 0.007, CHALK, 0.4);
+    c.line((0.75, 0.848), (0.75, 0.846), 0.026, pink, 0.2);
+    c
+}
+
+/// A landscape: a low sun over hills and water.
+fn painting(size: u32, seed: u32) -> Canvas {
+    Canvas::new(size, size * 3 / 4, |u, v| {
+        let stroke = clouds(u, v, 12, seed + 13) - 0.5;
+        let mut c = mix([0.26, 0.45, 0.62], [0.97, 0.76, 0.48], ramp(0.0, 0.55, v + 0.10 * stroke));
+        let (dx, dy) = ((u - 0.66) * 4.0 / 3.0, v - 0.36);
+        let sun = (dx * dx + dy * dy).sqrt();
+        c = mix([1.0, 0.93, 0.68], c, ramp(0.085, 0.11, sun + 0.02 * stroke));
+        let far = 0.50 - 0.10 * noise(u * 4.0, 0.5, 4, seed + 14);
+        let near = 0.66 - 0.16 * noise(u * 3.0 + 0.7, 1.5, 3, seed + 15);
+        if v > far {
+            c = mix([0.40, 0.44, 0.58], [0.52, 0.50, 0.56], stroke + 0.5);
+        }
+        if v > near {
+            c = mix([0.18, 0.32, 0.20], [0.42, 0.50, 0.20], stroke + 0.6 - (v - near));
+        }
+        if v > 0.80 {
+            let glitter = noise(u * 14.0, v * 60.0, 60, seed + 16);
+            c = mix(
+                [0.16, 0.30, 0.42],
+                [0.95, 0.74, 0.50],
+                ramp(0.55, 0.8, glitter) * (1.0 - ramp(0.05, 0.35, (u - 0.66).abs())),
+            );
+        }
+        shade(c, 0.94 + 0.2 * stroke)
+    })
+}
+
+/// A clock's face at ten past ten.
+fn clock(size: u32) -> Canvas {
+    let mut c = Canvas::new(size, size, |_, _| [0.94, 0.92, 0.86]);
+    let ink = [0.08, 0.07, 0.07];
+    let spot = |turns: f32, r: f32| {
+        let (x, y) = crate::scene::builtin::mesh::cos_sin(0.25 - turns);
+        (0.5 + x * r, 0.5 - y * r)
+    };
+    for hour in 0..12 {
+        let t = hour as f32 / 12.0;
+        let long = hour % 3 == 0;
+        c.line(spot(t, if long { 0.34 } else { 0.38 }), spot(t, 0.43), if long { 0.035 } else { 0.02 }, ink, 0.0);
+    }
+    c.line((0.5, 0.5), spot(10.17 / 12.0, 0.23), 0.045, ink, 0.0);
+    c.line(spot(10.0 / 60.0, -0.06), spot(10.0 / 60.0, 0.36), 0.03, ink, 0.0);
+    c.line(spot(0.55, -0.05), spot(0.55, 0.36), 0.012, [0.7, 0.1, 0.08], 0.0);
+    c
+}
+
+/// House fronts across the street under a light sky.
+fn street(size: u32, seed: u32) -> Canvas {
+    Canvas::new(size, size / 2, |u, v| {
+        let h = 1.0 - v;
+        let houses = 5.0;
+        let house = (u * houses).floor();
+        let x = u * houses - house;
+        let tall = 0.72 + 0.22 * noise(house, 0.0, 5, seed + 17);
+        let roof = tall + 0.05 * (1.0 - (x - 0.5).abs() * 2.0);
+        if h > roof {
+            return mix([0.86, 0.91, 0.96], [0.66, 0.80, 0.94], ramp(0.6, 1.0, h));
+        }
+        if h > tall - 0.03 {
+            return mix([0.55, 0.27, 0.20], [0.66, 0.36, 0.27], noise(u * 90.0, h * 60.0, 128, seed + 18));
+        }
+        let palette: [Colour; 5] =
+            [[0.85, 0.72, 0.54], [0.73, 0.53, 0.44], [0.86, 0.82, 0.74], [0.66, 0.71, 0.66], [0.88, 0.70, 0.60]];
+        let wall = shade(palette[house as usize % 5], 0.94 + 0.1 * clouds(u, v, 16, seed + 19));
+        if h < 0.07 {
+            return [0.55, 0.54, 0.53];
+        }
+        let (column, row) = (x * 3.0 - (x * 3.0).floor(), h * 5.0 - (h * 5.0).floor());
+        let (dx, dy) = ((column - 0.5).abs(), (row - 0.55).abs());
+        if dx < 0.24 && dy < 0.30 && h > 0.2 {
+            if dx < 0.025 || (row - 0.62).abs() < 0.02 || dx > 0.20 || dy > 0.27 {
+                return [0.93, 0.91, 0.86];
+            }
+            return mix([0.30, 0.38, 0.45], [0.60, 0.70, 0.78], row);
+        }
+        // Shops: awnings above dark doors.
+        if h < 0.2 && (x - 0.5).abs() < 0.42 {
+            if h > 0.155 {
+                let stripe = (x * 16.0).floor() as i32 % 2 == 0;
+                return if stripe { [0.90, 0.87, 0.80] } else { [0.62, 0.22, 0.18] };
+            }
+            return mix([0.22, 0.24, 0.26], [0.40, 0.44, 0.46], x);
+        }
+        wall
+    })
+}
+
+/// A bottle's label.
+fn label(size: u32) -> Canvas {
+    let mut c = Canvas::new(size, size, |_, v| {
+        let stripe = (v - 0.5).abs();
+        if stripe > 0.42 { [0.72, 0.55, 0.22] } else { [0.93, 0.89, 0.77] }
+    });
+    for (row, width) in [(0.33, 0.5), (0.5, 0.7), (0.66, 0.4)] {
+        for u in [0.25, 0.75] {
+            c.line((u - width * 0.22, row), (u + width * 0.22, row), 0.05, [0.25, 0.12, 0.10], 0.0);
+        }
+    }
+    c
+}

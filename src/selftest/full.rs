@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! The self-test: every kernel on tiny inputs with known answers.
+//!
+//! The CPU twin must reproduce stored checksums; an OpenCL device must lay out structs as the host does and agree with
+//! the twin, launch by launch, each fed the twin's own inputs. A smaller one runs by itself on a driver's first use: see
+//! [`crate::selftest::quick`].
+
+use std::sync::Arc;
+
+use crate::device::backend::{Backend, FrameBuffer};
+use crate::device::hooks::parity::{KernelParity, ParityBackend};
+use crate::device::kernels::Mutation;
+use crate::device::stage::Stage;
+use crate::device::twin::executor::TwinBackend;
+use crate::error::Result;
+use crate::method::options::{CorrectionMethod, RenderOptions};
+use crate::monitor::Monitor;
+use crate::prepare::scene_buffers::{SceneBuffers, Shading};
+use crate::render::renderer::{DeviceChoice, RendererOptions};
+use crate::scene::Scene;
+use crate::scene::builtin;
+use crate::selftest::quick::{check_layout, check_parity, run_frame, scene_buffers};
+
+pub use crate::selftest::quick::{Check, SelfTest};
+
+/// Scene of the self-test: mirror, glass, textures and shadows in a few triangles.
+const SCENE: &str = "spheres";
+const WIDTH: u32 = 100;
+const HEIGHT: u32 = 76;
+/// The twin's pictures of [`frames`], FNV-1a over their words. Changes only with the method, its defaults or the scene:
+/// then put in the checksum that `rarefy selftest --device cpu` prints.
+const TWIN_CHECKSUM: u64 = 0xe6b1_b149_6ddd_c26d;
+
+/// A change that breaks `stage` on purpose, for negative controls.
+pub fn breaking_mutation(stage: Stage) -> Mutation {
+    let (file, from, to) = match stage {
+        Stage::Step1 => ("step1.cl", "step.step_x * gx", "step.step_x * (gx & ~1u)"),
+        Stage::Step2a => ("step2a.cl", "step.step_y * gy", "step.step_y * (gy & ~1u)"),
+        Stage::Step2b => (
+            "step2b.cl",
+            "#define PACK_PIXEL(i) grid_item_pixel(&step, i)",
+            "#define PACK_PIXEL(i) grid_item_pixel(&step, i ^ 1u)",
+        ),
+        Stage::Step2c => ("step2c.cl", "list[step.list_offset + item]", "list[step.list_offset]"),
+        Stage::Step3a => ("step3a.cl", "step.step_y * gy", "step.step_y * (gy & ~1u)"),
+        Stage::Step3b => (
+            "step3b.cl",
+            "#define PACK_PIXEL(i) grid_item_pixel(&step, i)",
+            "#define PACK_PIXEL(i) grid_item_pixel(&step, i ^ 1u)",
+        ),
+        Stage::Step3c => ("step3c.cl", "list[step.list_offset + item]", "list[step.list_offset]"),
+        Stage::Step4 => ("step4.cl", "case 0u: return x > 0u", "case 0u: return x > 1000u"),
+    };
+    Mutation { file: file.into(), from: from.into(), to: to.into() }
+}
+
+/// Tests the device of `options`. `options.mutation` breaks kernels on purpose.
+///
+/// # Errors
+/// No device, a kernel that does not build, or a failing call; wrong results are not errors but failed checks.
+pub fn run(options: &RendererOptions) -> Result<SelfTest> {
+    let scene = builtin::to_scene(SCENE)?;
+    let buffers = scene_buffers(&scene, Shading::Full)?;
+    let twin_check = check_twin(&scene, &buffers)?;
+    let opened = match options.device {
+        DeviceChoice::Cpu => None,
+        _ => {
+            let options = RendererOptions { strict: true, ..options.clone() };
+            crate::render::renderer::open_opencl(&buffers, &options, &Monitor::default())?
+        }
+    };
+    let Some(mut device) = opened else {
+        let info = TwinBackend::new(buffers).info();
+        return Ok(SelfTest { device: format!("{}, {}", info.name, info.version), checks: vec![twin_check] });
+    };
+    let info = device.info();
+    let mut checks = vec![twin_check, check_layout(&device.probe()?)];
+    for result in stage_parity(&scene, &buffers, &mut device)? {
+        checks.push(check_parity(&result));
+    }
+    Ok(SelfTest { device: format!("{}, {}", info.name, info.version), checks })
+}
+
+/// The options of the frames that the self-test draws: together they launch every kernel.
+fn frames() -> [RenderOptions; 3] {
+    let base = RenderOptions { width: WIDTH, height: HEIGHT, ..RenderOptions::default() };
+    [
+        base.clone(),
+        RenderOptions { block: 4, ..base.clone() },
+        RenderOptions { correction_method: CorrectionMethod::Sweeps, ..base },
+    ]
+}
+
+/// Runs every kernel on the twin and on `device`, each launch fed the twin's own inputs, and compares all buffers.
+///
+/// # Errors
+/// A limit of the device, a kernel that does not build, or a failing call.
+pub fn stage_parity(scene: &Scene, buffers: &Arc<SceneBuffers>, device: &mut dyn Backend) -> Result<Vec<KernelParity>> {
+    let mut parity = ParityBackend::new(TwinBackend::new(Arc::clone(buffers)), device);
+    for options in frames() {
+        run_frame(&mut parity, scene, buffers, &options, true)?;
+    }
+    Ok(parity.results)
+}
+
+fn check_twin(scene: &Scene, buffers: &Arc<SceneBuffers>) -> Result<Check> {
+    let mut twin = TwinBackend::new(Arc::clone(buffers));
+    let mut checksum = 0xcbf2_9ce4_8422_2325u64;
+    for options in frames() {
+        run_frame(&mut twin, scene, buffers, &options, false)?;
+        for word in twin.read(FrameBuffer::Color, 0..(WIDTH * HEIGHT) as usize)? {
+            for byte in word.to_le_bytes() {
+                checksum = (checksum ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+            }
+        }
+    }
+    let passed = checksum == TWIN_CHECKSUM;
+    let detail = if passed {
+        format!("checksum {checksum:#018x}, as it should be")
+    } else {
+        format!("checksum {checksum:#018x} instead of {TWIN_CHECKSUM:#018x}")
+    };
+    Ok(Check { name: "twin".into(), passed, detail })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_twin_gives_the_known_answer() {
+        let options = RendererOptions { device: DeviceChoice::Cpu, ..RendererOptions::default() };
+        let result = run(&options).unwrap();
+        let remedy =
+            "if the method, its defaults or the scene changed on purpose, put the first number into TWIN_CHECKSUM";
+        assert!(result.passed(), "{}: {remedy}", result.checks[0].detail);
+        assert!(result.require().is_ok());
+    }
+
+    #[test]
+    fn a_failed_check_names_device_and_stage() {
+        let failed = Check { name: "step2c".into(), passed: false, detail: "7 words".into() };
+        let result = SelfTest { device: "Adreno".into(), checks: vec![failed] };
+        assert!(!result.passed());
+        assert_eq!(result.require().unwrap_err().to_string(), "self-test failed on Adreno: step2c: 7 words");
+    }
+}
