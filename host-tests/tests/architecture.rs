@@ -92,7 +92,7 @@ fn modules_use_only_what_comes_before_them() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
     // The check can fail.
     assert_eq!(wrong_way("src/scene/import/load.rs", "use crate::render::renderer::Renderer;").len(), 1);
-    assert_eq!(wrong_way("src/scene/import/load.rs", "use crate::{error, backend::twin};").len(), 1);
+    assert_eq!(wrong_way("src/scene/import/load.rs", "use crate::{error, device::twin};").len(), 1);
     assert!(wrong_way("src/render/renderer.rs", "use crate::scene::Scene;").is_empty());
 }
 

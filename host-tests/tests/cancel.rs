@@ -13,7 +13,8 @@ use rarefy::method::frame::Frame;
 use rarefy::method::options::{Mode, RenderOptions};
 use rarefy::monitor::{Cancel, Event, Monitor};
 use rarefy::render::renderer::{DeviceChoice, Keep, Renderer, RendererOptions};
-use rarefy::{Error, Scene, builtin, scene};
+use rarefy::scene::{self, builtin};
+use rarefy::{Error, Scene};
 use rarefy_host_tests::command::root;
 use rarefy_host_tests::frames::no_opencl;
 

@@ -6,7 +6,8 @@ use rarefy::device::opencl::{CacheFolder, Faults};
 use rarefy::layout::PLANE_OBJECT;
 use rarefy::method::options::RenderOptions;
 use rarefy::render::renderer::{DeviceChoice, Keep, Renderer, RendererOptions};
-use rarefy::{Error, Monitor, builtin};
+use rarefy::scene::builtin;
+use rarefy::{Error, Monitor};
 use rarefy_host_tests::frames::no_opencl;
 
 const OUT_OF_RESOURCES: i32 = -5;

@@ -3,13 +3,14 @@
 //! limit's name, both numbers and a remedy. The texts are those of docs/opencl-limits.md.
 #![allow(clippy::unwrap_used, missing_docs)]
 
+use rarefy::Error;
 use rarefy::device::backend::Backend;
 use rarefy::device::opencl::executor::{OpenClBackend, scan_group, work_group};
 use rarefy::device::opencl::{CacheFolder, OpenOptions, Profile, open_with};
 use rarefy::device::stage::Kernel;
 use rarefy::method::options::RenderOptions;
 use rarefy::render::renderer::{DeviceChoice, Keep, Renderer, RendererOptions};
-use rarefy::{Error, builtin};
+use rarefy::scene::builtin;
 use rarefy_host_tests::frames::{Prepared, no_opencl};
 
 const SCENE: &str = "spheres";

@@ -4,13 +4,15 @@
 
 use std::path::{Path, PathBuf};
 
+use rarefy::Error;
 use rarefy::device::kernels::Mutation;
 use rarefy::device::opencl::{CacheFolder, OpenOptions, Profile};
 use rarefy::device::stage::Stage;
 use rarefy::method::options::RenderOptions;
 use rarefy::render::renderer::{DeviceChoice, Keep, Renderer, RendererOptions};
-use rarefy::selftest::quick::{self, Known};
-use rarefy::{Error, builtin, selftest};
+use rarefy::scene::builtin;
+use rarefy::selftest::quick::Known;
+use rarefy::selftest::{full, quick};
 use rarefy_host_tests::frames::{Prepared, no_opencl};
 
 const OPENCL: DeviceChoice = DeviceChoice::OpenCl(None);
@@ -32,7 +34,7 @@ fn verdicts(cache: &Path) -> Vec<PathBuf> {
 fn check(prepared: &Prepared, cache: &Path, profile: Option<&Profile>) -> rarefy::Result<Known> {
     let open =
         OpenOptions { cache: CacheFolder::At(cache.into()), profile: profile.cloned(), ..OpenOptions::default() };
-    quick_test::check(&mut prepared.device(false, &open), profile)
+    quick::check(&mut prepared.device(false, &open), profile)
 }
 
 #[test]
@@ -60,7 +62,7 @@ fn a_device_is_tested_once() {
     assert_eq!(verdicts(folder.path()).len(), 2);
     // So is another build of the kernels.
     let open = OpenOptions { cache: CacheFolder::At(folder.path().into()), ..OpenOptions::default() };
-    assert_eq!(quick_test::check(&mut prepared.device(true, &open), None).unwrap(), Known::Tested);
+    assert_eq!(quick::check(&mut prepared.device(true, &open), None).unwrap(), Known::Tested);
 }
 
 #[test]
@@ -100,7 +102,7 @@ fn refused_by_name(stages: &[Stage]) {
     }
     let folder = tempfile::tempdir().unwrap();
     for &stage in stages {
-        let broken = options(OPENCL, folder.path(), Some(selftest::breaking_mutation(stage)));
+        let broken = options(OPENCL, folder.path(), Some(full::breaking_mutation(stage)));
         let refusal = |start: &str| match renderer(&broken).err() {
             Some(error @ Error::SelfTest { .. }) => error.to_string(),
             Some(error) => panic!("{start} of {}: {error}", stage.name()),
@@ -121,7 +123,7 @@ fn auto_falls_back_with_a_notice() {
         return;
     }
     let folder = tempfile::tempdir().unwrap();
-    let broken = options(DeviceChoice::Auto, folder.path(), Some(selftest::breaking_mutation(Stage::Step2b)));
+    let broken = options(DeviceChoice::Auto, folder.path(), Some(full::breaking_mutation(Stage::Step2b)));
     for _ in 0..2 {
         let mut fallen = renderer(&broken).unwrap();
         assert_eq!(fallen.info().backend, "cpu");
