@@ -24,6 +24,7 @@
 pub mod analysis;
 pub mod device;
 pub mod error;
+pub mod files;
 pub mod layout;
 pub mod math;
 pub mod method;

@@ -4,8 +4,7 @@
 use std::io::Write;
 use std::path::Path;
 
-use rarefy::render::picture::write_text_whole;
-use rarefy::{Error, Result};
+use rarefy::{Error, Result, files};
 use serde_json::Value;
 
 const STANDARD_OUTPUT: &str = "-";
@@ -17,7 +16,7 @@ pub fn write_json(path: &Path, value: &Value) -> Result<()> {
         let mut out = std::io::stdout().lock();
         return out.write_all(text.as_bytes()).and_then(|()| out.flush()).map_err(|e| Error::io("standard output", e));
     }
-    write_text_whole(path, &text)
+    files::write_whole(path, text.as_bytes())
 }
 
 /// Prints a line for people: to standard output, or to standard error where JSON has that.

@@ -1,20 +1,21 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Pictures as files: PNG and JPEG in, PNG (and text) out.
+//! Pictures as files: PNG and JPEG in, PNG out.
 //!
 //! In memory a pixel is one word: red in the lowest byte, then green, blue and alpha, as the renderer writes it.
-//! Files are written whole or not at all: aside, in the same folder, then renamed into place.
 
-use std::fs::{self, File, OpenOptions};
-use std::io::{self, BufReader, Write};
-use std::path::{Path, PathBuf};
+use std::io::{self, BufReader};
+use std::path::Path;
 
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ColorType, ExtendedColorType, ImageDecoder, ImageEncoder, ImageError, ImageReader, Limits};
 
-use crate::{Error, Result};
+use crate::{Error, Result, files};
 
 /// The longest side, in pixels, of a picture that is read or written.
 pub const MAX_SIDE: u32 = 16_384;
+
+/// The largest picture file that is read: 16 bits in each of four channels of the largest picture need as much.
+const MAX_FILE_BYTES: u64 = 2 << 30;
 
 /// Reads a PNG or JPEG file (told by its content, not its name) as `(width, height, pixels)`.
 ///
@@ -27,7 +28,7 @@ pub const MAX_SIDE: u32 = 16_384;
 /// [`Error::LimitExceeded`] if it is too large.
 pub fn read_rgb8(path: impl AsRef<Path>) -> Result<(u32, u32, Vec<u32>)> {
     let path = path.as_ref();
-    let file = File::open(path).map_err(|e| Error::io(path, e))?;
+    let file = files::open(path, MAX_FILE_BYTES)?;
     let reader = ImageReader::new(BufReader::new(file)).with_guessed_format().map_err(|e| Error::io(path, e))?;
     if reader.format().is_none() {
         return Err(broken(path, "this is neither a PNG nor a JPEG file"));
@@ -90,52 +91,7 @@ pub fn write_png(path: impl AsRef<Path>, width: u32, height: u32, pixels: &[u32]
     PngEncoder::new_with_quality(&mut encoded, CompressionType::Default, FilterType::Adaptive)
         .write_image(&bytes, width, height, ExtendedColorType::Rgb8)
         .map_err(|e| broken(path, e.to_string()))?;
-    write_whole(path, &encoded)
-}
-
-/// Writes a text file whole or not at all.
-///
-/// # Errors
-/// [`Error::Io`] if it cannot be written.
-pub fn write_text_whole(path: impl AsRef<Path>, text: &str) -> Result<()> {
-    write_whole(path.as_ref(), text.as_bytes())
-}
-
-/// Writes `bytes` beside `path` and renames the result to `path`. A symbolic link is followed; a device or pipe
-/// (`/dev/stdout`) is written to, never replaced.
-fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
-    let failed = |e: io::Error| Error::io(path, e);
-    if path.as_os_str().is_empty() {
-        return Err(failed(io::Error::new(io::ErrorKind::InvalidInput, "the file name is empty")));
-    }
-    let target = match fs::metadata(path) {
-        Ok(existing) if existing.is_dir() => {
-            return Err(failed(io::Error::new(io::ErrorKind::IsADirectory, "this is a folder, name a file in it")));
-        }
-        Ok(existing) if !existing.is_file() => {
-            let mut device = OpenOptions::new().write(true).open(path).map_err(failed)?;
-            return device.write_all(bytes).and_then(|()| device.flush()).map_err(failed);
-        }
-        Ok(_) => fs::canonicalize(path).map_err(failed)?,
-        Err(_) => path.to_path_buf(),
-    };
-    let folder = match target.parent() {
-        Some(parent) if !parent.as_os_str().is_empty() => parent.to_path_buf(),
-        _ => PathBuf::from("."),
-    };
-    // The system's message alone ("No such file") would leave open which file is meant.
-    let no_folder = |e: io::Error| {
-        failed(io::Error::new(e.kind(), format!("cannot write into the folder {}: {e}", folder.display())))
-    };
-    // Opened here, not by `tempfile`, whose files are private: the result is an ordinary file under the user's umask.
-    let create = |aside: &Path| OpenOptions::new().write(true).create_new(true).open(aside);
-    let made = tempfile::Builder::new().prefix(".rarefy-").suffix(".part").make_in(&folder, create);
-    let mut file = made.map_err(no_folder)?;
-    file.as_file_mut().write_all(bytes).map_err(failed)?;
-    // Some file systems report a full disk only now.
-    file.as_file().sync_all().map_err(failed)?;
-    file.persist(&target).map_err(|e| failed(e.error))?;
-    Ok(())
+    files::write_whole(path, &encoded)
 }
 
 /// An empty vector with room for `count` values, or an error where memory does not suffice.
@@ -184,6 +140,7 @@ fn decode_error(path: &Path, error: ImageError) -> Error {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use std::ffi::OsString;
+    use std::fs;
 
     use super::*;
 
@@ -310,57 +267,11 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_written_leaves_no_file() {
+    fn what_is_no_picture_leaves_no_file() {
         let folder = tempfile::tempdir().unwrap();
-        let missing = folder.path().join("none").join("a.png");
-        let message = write_png(&missing, 1, 1, &[0]).unwrap_err().to_string();
-        assert!(message.contains("a.png") && message.contains("cannot write into the folder"), "{message}");
-        assert!(!message.contains(".part"), "{message}");
-        let file_as_folder = folder.path().join("file");
-        fs::write(&file_as_folder, "x").unwrap();
-        assert!(write_text_whole(file_as_folder.join("a.json"), "{}").is_err());
-        assert!(write_text_whole(folder.path(), "{}").unwrap_err().to_string().contains("this is a folder"));
-        assert!(write_text_whole("", "{}").is_err());
         for (width, height, count) in [(2, 2, 3), (0, 0, 0), (0, 5, 0), (16_385, 1, 16_385)] {
             assert!(write_png(folder.path().join("b.png"), width, height, &vec![0; count]).is_err());
         }
-        assert_eq!(names(folder.path()), ["file"]);
-        assert_eq!(fs::read(&file_as_folder).unwrap(), b"x");
-    }
-
-    #[test]
-    fn text_replaces_an_older_file() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("report.json");
-        write_text_whole(&path, "a longer first text").unwrap();
-        write_text_whole(&path, "{}\n").unwrap();
-        assert_eq!(fs::read_to_string(&path).unwrap(), "{}\n");
-        assert_eq!(names(folder.path()), ["report.json"]);
-    }
-
-    #[cfg(unix)]
-    #[test]
-    fn links_are_followed_and_files_are_as_public_as_others() {
-        use std::os::unix::fs::{PermissionsExt, symlink};
-        let folder = tempfile::tempdir().unwrap();
-        let (real, link, plain) = (folder.path().join("real"), folder.path().join("link"), folder.path().join("plain"));
-        fs::write(&real, "old").unwrap();
-        fs::write(&plain, "").unwrap();
-        symlink(&real, &link).unwrap();
-        write_text_whole(&link, "new").unwrap();
-        assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
-        assert_eq!(fs::read_to_string(&real).unwrap(), "new");
-        let mode = |path: &Path| fs::metadata(path).unwrap().permissions().mode() & 0o777;
-        assert_eq!(mode(&real), mode(&plain));
-    }
-
-    #[cfg(target_os = "linux")]
-    #[test]
-    fn a_full_device_is_an_error_and_devices_stay_devices() {
-        use std::os::unix::fs::FileTypeExt;
-        let message = write_text_whole("/dev/full", "x").unwrap_err().to_string();
-        assert!(message.contains("/dev/full") && message.contains("No space left"), "{message}");
-        write_text_whole("/dev/null", "x").unwrap();
-        assert!(fs::metadata("/dev/null").unwrap().file_type().is_char_device());
+        assert!(names(folder.path()).is_empty());
     }
 }

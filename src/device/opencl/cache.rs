@@ -5,17 +5,20 @@
 //! An entry names everything that it depends on, and carries a checksum; whatever does not fit is built anew. Entries
 //! are written aside and renamed, so that processes may race. A cache that cannot be written costs time, nothing else.
 
-use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
 use super::door::Door;
+use crate::{Error, Result, files};
 
 /// The variable that names the cache folder.
 pub(super) const FOLDER_VARIABLE: &str = "RAREFY_CACHE_DIR";
 
 /// Beyond this many entries of a kind the oldest go: each edit of a kernel leaves one behind.
 const MOST_ENTRIES: usize = 256;
+
+/// The largest entry that is read: a compiled program has a hundredth of it.
+const MAX_ENTRY_BYTES: u64 = 64 << 20;
 
 /// A kind of entries: how their files begin and end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -107,7 +110,13 @@ impl Cache {
     /// The binary for `key`, if there is a sound one.
     pub fn load(&self, key: &Key) -> Option<Vec<u8>> {
         let path = self.entry(key)?;
-        let bytes = std::fs::read(&path).ok()?;
+        let bytes = match files::read(&path, MAX_ENTRY_BYTES) {
+            Ok(bytes) => bytes,
+            Err(error) => {
+                log::debug!("no cache entry: {error}");
+                return None;
+            }
+        };
         let binary = unpack(self.kind, key, &bytes);
         if binary.is_none() {
             log::info!("{}: a damaged or foreign cache entry, made anew", path.display());
@@ -166,12 +175,9 @@ fn unpack<'a>(kind: Kind, key: &Key, bytes: &'a [u8]) -> Option<&'a [u8]> {
     (!binary.is_empty() && u128::from_le_bytes(*checksum) == hash(&[binary])).then_some(binary)
 }
 
-fn write_whole(folder: &Path, path: &Path, bytes: &[u8]) -> std::io::Result<()> {
-    std::fs::create_dir_all(folder)?;
-    let mut file = tempfile::NamedTempFile::new_in(folder)?;
-    file.write_all(bytes)?;
-    file.persist(path).map_err(|error| error.error)?;
-    Ok(())
+fn write_whole(folder: &Path, path: &Path, bytes: &[u8]) -> Result<()> {
+    std::fs::create_dir_all(folder).map_err(|error| Error::io(folder, error))?;
+    files::write_own(path, bytes)
 }
 
 /// Removes the oldest entries beyond [`MOST_ENTRIES`].
@@ -236,6 +242,24 @@ mod tests {
         let other = Key::new(&["b"]);
         std::fs::copy(&path, cache.entry(&other).unwrap()).unwrap();
         assert_eq!(cache.load(&other), None);
+    }
+
+    /// An entry that leads to a file without an end once filled the memory.
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn an_entry_that_is_no_file_is_made_anew() {
+        let (_folder, cache) = scratch();
+        let key = Key::new(&["a"]);
+        cache.store(&key, b"binary");
+        let path = cache.entry(&key).unwrap();
+        std::fs::remove_file(&path).unwrap();
+        std::os::unix::fs::symlink("/dev/zero", &path).unwrap();
+        assert_eq!(cache.load(&key), None);
+        cache.store(&key, b"newer");
+        assert_eq!(cache.load(&key).unwrap(), b"newer");
+        // One that is too large: sparse, so that it takes no space.
+        std::fs::File::create(&path).unwrap().set_len(MAX_ENTRY_BYTES + 1).unwrap();
+        assert_eq!(cache.load(&key), None);
     }
 
     #[test]

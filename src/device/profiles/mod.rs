@@ -14,7 +14,7 @@ use serde_json::{Map, Value};
 pub use choices::{Choices, MemoryPath, Traversal};
 
 use crate::device::opencl::{Kind, Query};
-use crate::{Error, Result};
+use crate::{Error, Result, files};
 
 /// How well a value is known.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -145,11 +145,7 @@ impl Profile {
             },
             _ => (path, 0),
         };
-        let size = std::fs::metadata(path).map_err(|error| Error::io(path, error))?.len();
-        if size > MAX_FILE_BYTES {
-            return Err(bad(&path.to_string_lossy(), format!("{size} bytes are too many for a profile")));
-        }
-        let bytes = std::fs::read(path).map_err(|error| Error::io(path, error))?;
+        let bytes = files::read(path, MAX_FILE_BYTES)?;
         let value: Value = serde_json::from_slice(&bytes).map_err(|error| Error::Syntax {
             path: path.to_path_buf(),
             line: error.line().max(1),

@@ -3,11 +3,14 @@
 
 use std::fmt::Write as _;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
+
+use image::codecs::png::PngEncoder;
+use image::{ExtendedColorType, ImageEncoder};
 
 use super::model::Model;
 use crate::scene::Surface;
-use crate::{Error, Result};
+use crate::{Error, Result, files};
 
 /// The text of `scene.obj`. Numbers are written with as many digits as give the same `f32` when read.
 pub fn obj_text(model: &Model) -> String {
@@ -86,36 +89,26 @@ pub fn write_model(model: &Model, folder: &Path) -> Result<()> {
         Err(_) if folder.is_file() => return Err(refuse(folder, "this is a file; name a new or an empty folder")),
         Err(e) => return Err(Error::io(folder, e)),
     }
-    let parent = match folder.parent() {
-        Some(p) if !p.as_os_str().is_empty() => p.to_path_buf(),
-        _ => PathBuf::from("."),
-    };
-    fs::create_dir_all(&parent).map_err(|e| Error::io(&parent, e))?;
-    // Written beside the target and renamed at the end, so that a failure leaves nothing behind.
-    let aside = tempfile::Builder::new().prefix(".rarefy-").tempdir_in(&parent).map_err(|e| Error::io(&parent, e))?;
-    let inner = aside.path().join("scene");
-    let textures = inner.join("textures");
-    let made = if model.textures.is_empty() { &inner } else { &textures };
-    fs::create_dir_all(made).map_err(|e| Error::io(folder, e))?;
-    let put = |name: &str, text: &str| fs::write(inner.join(name), text).map_err(|e| Error::io(folder.join(name), e));
-    put("scene.obj", &obj_text(model))?;
-    put("scene.mtl", &mtl_text(model))?;
-    put("view.json", model.view)?;
-    for picture in &model.textures {
-        let path = textures.join(&picture.name);
-        let shown = folder.join("textures").join(&picture.name);
-        image::save_buffer(&path, &picture.rgb, picture.width, picture.height, image::ExtendedColorType::Rgb8)
-            .map_err(|e| match e {
-                image::ImageError::IoError(source) => Error::io(&shown, source),
-                other => Error::Image { path: shown.clone(), message: other.to_string() },
-            })?;
-    }
-    // Renaming onto an empty folder works on Unix only, so it is taken away first.
-    match fs::remove_dir(folder) {
-        Err(e) if e.kind() != std::io::ErrorKind::NotFound => return Err(Error::io(folder, e)),
-        _ => {}
-    }
-    fs::rename(&inner, folder).map_err(|e| Error::io(folder, e))
+    files::write_folder(folder, |inner| {
+        // Messages name where a file would have come to lie.
+        let put =
+            |name: &str, bytes: &[u8]| fs::write(inner.join(name), bytes).map_err(|e| Error::io(folder.join(name), e));
+        put("scene.obj", obj_text(model).as_bytes())?;
+        put("scene.mtl", mtl_text(model).as_bytes())?;
+        put("view.json", model.view.as_bytes())?;
+        if !model.textures.is_empty() {
+            fs::create_dir(inner.join("textures")).map_err(|e| Error::io(folder.join("textures"), e))?;
+        }
+        for picture in &model.textures {
+            let name = format!("textures/{}", picture.name);
+            let mut encoded = Vec::new();
+            PngEncoder::new(&mut encoded)
+                .write_image(&picture.rgb, picture.width, picture.height, ExtendedColorType::Rgb8)
+                .map_err(|e| Error::Image { path: folder.join(&name), message: e.to_string() })?;
+            put(&name, &encoded)?;
+        }
+        Ok(())
+    })
 }
 
 fn refuse(folder: &Path, message: &str) -> Error {

@@ -4,21 +4,24 @@
 //! Line ends may be LF, CRLF or a lone CR; a backslash before a line end joins two lines; a UTF-8 byte order mark is
 //! skipped. UTF-16 and binary files are refused with a message that says so.
 
-use std::fs::File;
-use std::io::{BufRead, BufReader, Read};
+use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 
+use crate::files::{self, InputFile};
 use crate::{Error, Result};
 
 /// Longest logical line: far above any real polygon, far below what would fill the memory.
 const MAX_LINE_BYTES: usize = 64 << 20;
+
+/// Largest OBJ or MTL file: a model of ten million triangles has half of it.
+const MAX_FILE_BYTES: u64 = 4 << 30;
 
 /// How much of a file is looked at to tell text from other things.
 const PROBE_BYTES: usize = 64 << 10;
 
 /// A file that yields logical lines with the number of the physical line that each begins at.
 pub(super) struct LogicalLines {
-    reader: BufReader<File>,
+    reader: BufReader<InputFile>,
     path: PathBuf,
     /// The bytes of the current logical line.
     line: Vec<u8>,
@@ -33,7 +36,8 @@ pub(super) struct LogicalLines {
 impl LogicalLines {
     /// Opens `path`; an empty, UTF-16 or binary file is an error here.
     pub(super) fn open(path: &Path) -> Result<Self> {
-        let (file, bytes_total) = open_regular(path)?;
+        let file = files::open(path, MAX_FILE_BYTES)?;
+        let bytes_total = file.length();
         let mut reader = BufReader::with_capacity(PROBE_BYTES, file);
         let probe = reader.fill_buf().map_err(|e| Error::io(path, e))?;
         check_is_text(path, probe)?;
@@ -122,15 +126,7 @@ impl LogicalLines {
 
 /// Reads a whole text file of at most `max_bytes`.
 pub(super) fn read_text(path: &Path, max_bytes: u64) -> Result<String> {
-    let (file, bytes) = open_regular(path)?;
-    if bytes > max_bytes {
-        return Err(Error::scene(
-            path.display().to_string(),
-            format!("file has {bytes} bytes, at most {max_bytes} are expected; is this the right file?"),
-        ));
-    }
-    let mut data = Vec::new();
-    file.take(max_bytes).read_to_end(&mut data).map_err(|e| Error::io(path, e))?;
+    let data = files::read(path, max_bytes)?;
     check_is_text(path, &data)?;
     let data = data.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&data);
     match std::str::from_utf8(data) {
@@ -141,16 +137,6 @@ pub(super) fn read_text(path: &Path, max_bytes: u64) -> Result<String> {
             message: "not valid UTF-8; re-save the file as UTF-8".into(),
         }),
     }
-}
-
-/// Opens a regular file; folders, pipes and devices are refused, since reading those may never end.
-fn open_regular(path: &Path) -> Result<(File, u64)> {
-    let meta = std::fs::metadata(path).map_err(|e| Error::io(path, e))?;
-    if !meta.is_file() {
-        return Err(Error::scene(path.display().to_string(), "not a file"));
-    }
-    let file = File::open(path).map_err(|e| Error::io(path, e))?;
-    Ok((file, meta.len()))
 }
 
 /// Refuses empty, UTF-16 and binary files by their first bytes.

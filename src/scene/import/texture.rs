@@ -2,12 +2,12 @@
 //! Textures from PNG and JPEG files. Sizes are read from headers and checked before any texel is allocated.
 
 use std::collections::HashMap;
-use std::fs::File;
-use std::io::{self, BufReader, Cursor, Read, Seek, SeekFrom};
+use std::io::{self, BufReader, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 use image::{ImageFormat, ImageReader, Limits};
 
+use crate::files::{self, InputFile};
 use crate::monitor::Monitor;
 use crate::scene::Texture;
 use crate::{Error, Result};
@@ -18,7 +18,7 @@ pub(super) const MAX_SIDE: u32 = 16384;
 /// Most bytes of texels in a scene.
 pub(super) const MAX_TOTAL_BYTES: u64 = 256 << 20;
 
-/// What a decoder may hold in memory: a picture of [`MAX_TOTAL_BYTES`] with 16 bits a channel.
+/// What a decoder may hold in memory, and the largest file: a picture of [`MAX_TOTAL_BYTES`] with 16 bits a channel.
 const DECODER_BYTES: u64 = 2 * MAX_TOTAL_BYTES;
 
 /// What a picture is used for.
@@ -97,9 +97,8 @@ impl Textures {
     /// Decodes a picture; `None` if it is of another format.
     fn decode(&mut self, path: &Path, name: &str, role: Role) -> Result<Option<Texture>> {
         let fail = |message: String| Error::Image { path: path.to_path_buf(), message };
-        let at_path = |e| Error::io(path, e);
         let mut head = [0u8; 32];
-        let length = read_head(path, &mut head).map_err(at_path)?;
+        let length = read_head(path, &mut head)?;
         let head = &head[..length];
         let format = match image::guess_format(head) {
             Ok(format @ (ImageFormat::Png | ImageFormat::Jpeg)) => format,
@@ -107,8 +106,8 @@ impl Textures {
             _ => return Ok(None),
         };
         let monitor = self.monitor.clone();
-        let open = || -> io::Result<_> {
-            let file = Watched { file: File::open(path)?, monitor: &monitor };
+        let open = || -> Result<_> {
+            let file = Watched { file: files::open(path, DECODER_BYTES)?, monitor: &monitor };
             let mut reader = ImageReader::with_format(BufReader::new(file), format);
             // Sizes are ours to check, with the numbers in the message.
             let mut limits = Limits::no_limits();
@@ -124,11 +123,11 @@ impl Textures {
         // The PNG decoder refuses absurd sizes without naming them.
         let size = match (format, png_size(head)) {
             (ImageFormat::Png, Some(size)) => size,
-            _ => open().map_err(at_path)?.into_dimensions().map_err(broken)?,
+            _ => open()?.into_dimensions().map_err(broken)?,
         };
         monitor.check()?;
         self.reserve(path, size)?;
-        let decoded = open().map_err(at_path)?.decode();
+        let decoded = open()?.decode();
         monitor.check()?;
         let picture = decoded.map_err(broken)?;
         let has_alpha = picture.color().has_alpha();
@@ -179,7 +178,7 @@ impl Textures {
 
 /// A file that cannot be read any more once the work is cancelled: that is how a decoder is stopped.
 struct Watched<'a> {
-    file: File,
+    file: InputFile,
     monitor: &'a Monitor,
 }
 
@@ -201,10 +200,11 @@ fn find(folder: &Path, name: &str) -> Option<PathBuf> {
     [folder.join(name), folder.join(name.replace('\\', "/"))].into_iter().find(|p| p.is_file())
 }
 
-fn read_head(path: &Path, head: &mut [u8]) -> io::Result<usize> {
+fn read_head(path: &Path, head: &mut [u8]) -> Result<usize> {
     let mut bytes = Vec::new();
-    File::open(path)?.take(head.len() as u64).read_to_end(&mut bytes)?;
-    Cursor::new(&bytes).read_exact(&mut head[..bytes.len()])?;
+    let file = files::open(path, DECODER_BYTES)?;
+    file.take(head.len() as u64).read_to_end(&mut bytes).map_err(|e| Error::io(path, e))?;
+    head[..bytes.len()].copy_from_slice(&bytes);
     Ok(bytes.len())
 }
 
