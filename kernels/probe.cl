@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // probe: what this device's compiler makes of the shared structs. Not a step of the method.
 // Inputs: none. Outputs: sizes and member offsets in bytes, in the order of rarefy::layout::expected_probe().
-// Invariant: equal to the host's layout. Cost: one work-item. Twin: src/layout/mod.rs (expected_probe).
+// Invariant: equal to the host's layout. Cost: one work-item. Twin: src/layout/structs.rs (expected_probe).
 #include "types.h"
 
 #define OFFSET(type, member) ((uint)((__private char *)&((type *)p)->member - (__private char *)p))

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Structs shared with the host, and the macros that every kernel file builds on.
-// This file is the truth; src/layout/mod.rs mirrors it and a probe kernel compares every size and offset.
-// Numbers that both sides need (PLANE_*, CLASS_*, FAIL_*, SURFACE_*, ...) are build options made by src/layout/mod.rs.
+// This file is the truth; src/layout/structs.rs mirrors it and a probe kernel compares every size and offset.
+// Numbers that both sides need (PLANE_*, CLASS_*, FAIL_*, SURFACE_*, ...) are build options made by src/layout/flavour.rs.
 #ifndef RAREFY_TYPES_H
 #define RAREFY_TYPES_H
 

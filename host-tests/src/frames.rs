@@ -8,7 +8,6 @@ use rarefy::device::backend::{Backend, BufferSizes, FrameBuffer};
 use rarefy::device::opencl::executor::OpenClBackend;
 use rarefy::device::opencl::{OpenOptions, Profile, open_with};
 use rarefy::device::twin::executor::TwinBackend;
-use rarefy::device::twin::planes::plane_index;
 use rarefy::layout::*;
 use rarefy::method::bands::{self, Plan, Room};
 use rarefy::method::camera::frame_params;

@@ -11,7 +11,6 @@ use crate::device::backend::Backend;
 use crate::device::backend::FrameBuffer;
 use crate::device::hooks::recording::Recorded;
 use crate::device::stage::{Kernel, Stage};
-use crate::device::twin::planes::plane_index;
 use crate::error::Result;
 use crate::layout::*;
 use crate::method::bands::read_plane;

@@ -5,7 +5,6 @@
 use crate::device::backend::{Backend, FrameBuffer};
 use crate::device::stage::Kernel;
 use crate::device::twin::pack::grid_items;
-use crate::device::twin::planes::plane_index;
 use crate::error::Result;
 use crate::layout::*;
 use crate::method::options::{Correction, CorrectionMethod, Interpolation, RenderOptions};

@@ -7,7 +7,6 @@ use super::renderer::DEFAULT_BUDGET_BYTES;
 use crate::device::backend::{Backend, FrameBuffer};
 use crate::device::hooks::progress::WatchedBackend;
 use crate::device::stage::Stage;
-use crate::device::twin::planes::plane_index;
 use crate::error::Result;
 use crate::layout::*;
 use crate::method::bands::{self, Collected, CounterSums, Plan, Room};

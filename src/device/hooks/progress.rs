@@ -4,9 +4,8 @@
 
 use crate::device::backend::{Backend, BackendInfo, BufferSizes, FrameBuffer, MemoryLimits};
 use crate::device::stage::{Kernel, Stage};
-use crate::device::twin::planes::color_index;
 use crate::error::Result;
-use crate::layout::{FrameParams, StepParams, Traversal};
+use crate::layout::{FrameParams, StepParams, Traversal, color_index};
 use crate::monitor::{Monitor, Preview};
 
 /// A share of an adaptive window's time at which each stage begins, in the order of [`Stage::ALL`]; for progress only.

@@ -11,6 +11,7 @@ use glam::Vec3;
 use super::scene_args::{Work, xyz};
 use crate::error::Result;
 use crate::layout::*;
+pub use crate::layout::{color_index, plane_index};
 use crate::math::{clamp, dot, pack_normal, pack_texcoord, unpack_normal, unpack_texcoord};
 use crate::monitor::Monitor;
 
@@ -102,22 +103,6 @@ impl Attributes {
         object: NO_OBJECT,
         shadow_bits: 0,
     };
-}
-
-/// Where pixel `(x, y)` lies within a plane.
-#[inline]
-pub fn plane_index(frame: &FrameParams, x: u32, y: u32) -> u32 {
-    let shift = frame.block >> 1;
-    let mask = frame.block - 1;
-    let phase = ((y & mask) << shift) + (x & mask);
-    let row = (y - frame.window_begin) >> shift;
-    (phase * frame.phase_height + row) * frame.phase_width + (x >> shift)
-}
-
-/// Where a pixel's colour lies: row-major within the window.
-#[inline]
-pub fn color_index(frame: &FrameParams, x: u32, y: u32) -> u32 {
-    (y - frame.window_begin) * frame.width + x
 }
 
 /// Writes all attributes of the pixel at plane index `at`.

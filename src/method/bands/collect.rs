@@ -4,7 +4,6 @@
 use std::collections::BTreeMap;
 
 use crate::device::backend::{Backend, FrameBuffer};
-use crate::device::twin::planes::{color_index, plane_index};
 use crate::error::Result;
 use crate::layout::*;
 use crate::method::frame::{Keep, RayCounts, WorkCounts};

@@ -141,7 +141,7 @@ impl Room {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-    use crate::device::twin::planes::{color_index, plane_index};
+    use crate::layout::{color_index, plane_index};
     use crate::method::camera::{MAX_SAMPLE_SIDE, frame_params};
     use crate::method::options::RenderOptions;
     use crate::prepare::kdtree::{BuildOptions, KdTree};
