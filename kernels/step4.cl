@@ -168,6 +168,7 @@ __kernel void step4_tail(SCENE_PARAMS, const StepParams step, __global uint *att
     uint wanted = 0u, total;
     for (uint i = begin; i < end; ++i) wanted += claimed_by(frame, &round, attributes, out_color, list, i) ? 1u : 0u;
     uint next = round.list_offset + inclusive_prefix(wanted, scratch, &total) - wanted;
+    if (total > round.list_end - round.list_offset) break; // the same for all lanes; the host says what is wrong
     for (uint i = begin; i < end; ++i) {
       if (claimed_by(frame, &round, attributes, out_color, list, i)) list[next++] = target(frame, &round, attributes, out_color, list, i);
     }

@@ -69,8 +69,8 @@ typedef struct {
   uint scan_group;      // work-items of a scan's work-group, a power of two
   uint lenient_tests;   // FAIL_* bits of the tests that count only where the references look different
   uint t_visible;       // from which difference of a channel of 0..255 on two pixels look different; 0: always
+  uint list_end;        // scatter, step4_tail: the first list entry that may not be written
   uint pad0;
-  uint pad1;
 } StepParams;
 
 // One light; position.w and intensity.w are unused.

@@ -66,6 +66,18 @@ pub enum Error {
         /// How to stay within the limit; may be empty.
         remedy: String,
     },
+    /// A launch would reach beyond one of its buffers: a defect of this library, found before a device saw the launch.
+    #[error("launch of `{kernel}` needs {wanted} {what}, there are {have}: a defect of Rarefy, please report it")]
+    LaunchBeyondBuffer {
+        /// The kernel.
+        kernel: &'static str,
+        /// What there is too little of: words of a buffer, or pixels of the frame.
+        what: &'static str,
+        /// What the launch needs.
+        wanted: u64,
+        /// What there is.
+        have: u64,
+    },
     /// No OpenCL library, platform or device could be used.
     #[error("no usable OpenCL device: {}; use --device cpu for the CPU twin", tried.join("; "))]
     NoOpenCl {

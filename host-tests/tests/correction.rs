@@ -491,7 +491,7 @@ fn rounds_by_hand(backend: &mut dyn Backend, mut sources: Vec<u32>, flags: u32) 
         }
         let found = backend.read_sum(sums_offset).unwrap();
         if found > 0 {
-            backend.run(Kernel::Step4Scatter, &step).unwrap();
+            backend.run(Kernel::Step4Scatter, &StepParams { list_end: count + found, ..step }).unwrap();
             backend.run(Kernel::Step4Trace, &StepParams { item_count: found, ..step }).unwrap();
         }
         fired += found;
@@ -523,7 +523,8 @@ const NO_STEP: StepParams = StepParams {
     scan_group: 0,
     lenient_tests: 0,
     t_visible: 0,
-    pad: [0; 2],
+    list_end: 0,
+    pad: 0,
 };
 
 #[test]

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Where kernels run: on an OpenCL device or as their CPU twins, behind one interface.
 
+use super::launch_check::scan_words;
 use crate::device::stage::Kernel;
 use crate::error::Result;
-use crate::layout::{COUNTER_COUNT, FrameParams, PLANE_COUNT, StepParams, TAIL_ROUNDS, TAIL_SUM_ENDS, Traversal};
+use crate::layout::*;
 use crate::monitor::Monitor;
 
 /// What the statistics say about the device of a frame.
@@ -43,21 +44,17 @@ impl BufferSizes {
         let pitch = u64::from(frame.plane_pitch);
         let rows = frame.window_end - frame.window_begin;
         let pixels = u64::from(frame.width) * u64::from(rows);
-        // step4 looks in four directions from every listed pixel; border tiles of a grid are padded.
-        let items = if attributes { (4 * pixels).max(pixels + 64 * u64::from(frame.width + rows + 64)) } else { 0 };
+        let items = if attributes { most_packed_items(frame.width, rows) } else { 0 };
+        let listed = most_listed_pixels(frame);
         let masks = items.div_ceil(32).max(1);
-        let (mut sums, mut level) = (masks, masks);
-        while level > 1 {
-            level = level.div_ceil(u64::from(scan_group));
-            sums += level;
-        }
+        let sums = scan_words(masks, scan_group);
         Some(BufferSizes {
             attributes: words(if attributes { pitch * u64::from(PLANE_COUNT) } else { 1 })?,
             counters: words(if counters { pitch * u64::from(COUNTER_COUNT) } else { 0 })?,
             color: words(pixels)?,
-            list: words(if attributes { pixels } else { 1 })?,
+            list: words(if attributes { listed } else { 1 })?,
             masks: words(masks)?,
-            sums: words((sums + 1).max(u64::from(TAIL_SUM_ENDS + TAIL_ROUNDS)))?,
+            sums: words(sums.max(u64::from(TAIL_SUM_ENDS + TAIL_ROUNDS)))?,
         })
     }
 
@@ -81,6 +78,30 @@ impl BufferSizes {
     pub fn bytes(&self) -> u64 {
         self.each().into_iter().map(|words| 4 * words as u64).sum()
     }
+}
+
+/// The most items that a packing can have in a window of `width` by `rows` samples: what masks and sums are sized by.
+///
+/// step2b and step3b pack grids of at most half of the pixels, in whole tiles, once for each half of the list. step4
+/// packs [`STEP4_WAYS_MOST`] neighbours of each listed pixel, which may be all pixels but the base ones.
+pub fn most_packed_items(width: u32, rows: u32) -> u64 {
+    let (width, rows) = (u64::from(width), u64::from(rows));
+    let tiled = |side: u64| side.next_multiple_of(u64::from(PACK_TILE_SIDE));
+    let halves = [(width.div_ceil(2), rows), (width, rows.div_ceil(2))];
+    let grid = halves.map(|(columns, rows)| 2 * tiled(columns) * tiled(rows));
+    let neighbours = u64::from(STEP4_WAYS_MOST) * width * rows;
+    neighbours.max(grid[0]).max(grid[1])
+}
+
+/// The most entries that the list can have in a window.
+///
+/// A pixel is listed once, when its check fails or when step4 fires at it. In a window of several, the pixels at which
+/// other windows fire come first in the list, and step4 may fire at them again.
+pub fn most_listed_pixels(frame: &FrameParams) -> u64 {
+    let rows = frame.window_end - frame.window_begin;
+    let pixels = u64::from(frame.width) * u64::from(rows);
+    let is_one_window = frame.interior_begin == 0 && frame.interior_end == frame.height;
+    if is_one_window { pixels } else { 2 * pixels }
 }
 
 /// How much memory a back end has for a frame, in bytes.

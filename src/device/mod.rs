@@ -4,6 +4,7 @@
 pub mod backend;
 pub mod hooks;
 pub mod kernels;
+pub mod launch_check;
 pub mod opencl;
 pub mod profiles;
 pub mod stage;

@@ -116,6 +116,8 @@ shared_constants! {
     /// Step flag: in step4 sources also look for pixels between two parts of something thin.
     STEP_BRIDGE = 1024;
 
+    /// Items of a source in step4's first round: four neighbours and a pixel across a gap. Later rounds have four.
+    STEP4_WAYS_MOST = 5;
     /// How many columns to either side step4 looks for the other part of something thin.
     BRIDGE_REACH = 16;
 

@@ -61,7 +61,8 @@ pub struct StepParams {
     pub scan_group: u32,
     pub lenient_tests: u32,
     pub t_visible: u32,
-    pub pad: [u32; 2],
+    pub list_end: u32,
+    pub pad: u32,
 }
 const _: () = assert!(size_of::<StepParams>() == 96);
 

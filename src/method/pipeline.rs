@@ -2,7 +2,7 @@
 //! A frame, step by step, as the paper tells it. The same sequence drives every back end. A frame that does not fit into
 //! memory is drawn window by window ([`crate::method::bands`]).
 
-use crate::device::backend::{Backend, FrameBuffer};
+use crate::device::backend::{Backend, FrameBuffer, most_listed_pixels};
 use crate::device::stage::Kernel;
 use crate::device::twin::pack::grid_items;
 use crate::error::Result;
@@ -254,7 +254,7 @@ fn pack(backend: &mut dyn Backend, kernels: &PackKernels, step: &StepParams) -> 
     }
     let count = backend.read_sum(sums_offset)?;
     if count > 0 {
-        backend.run(kernels.scatter, &step)?;
+        backend.run(kernels.scatter, &StepParams { list_end: step.list_offset + count, ..step })?;
     }
     Ok(count)
 }
@@ -287,6 +287,8 @@ fn correct(
         t_visible: options.correction_t_visible,
         t_norm: options.correction_t_norm,
         t_gcol: options.correction_t_gcol,
+        // A plan's windows are such that every list address is a 32-bit number.
+        list_end: most_listed_pixels(frame) as u32,
         ..bytemuck::Zeroable::zeroed()
     };
     match options.correction_method {
@@ -319,8 +321,13 @@ fn correct_converged(
     let mut source_offset = listed;
     while list_offset > source_offset {
         let sources = list_offset - source_offset;
-        (source_offset, list_offset) = if sources <= TAIL_SOURCES {
+        let followed = if sources <= TAIL_SOURCES {
             follow_tail(backend, step, source_offset, sources, list_offset)?
+        } else {
+            (source_offset, list_offset)
+        };
+        (source_offset, list_offset) = if followed != (source_offset, list_offset) {
+            followed
         } else {
             (list_offset, list_offset + fire_from(backend, step, source_offset, sources, list_offset)?)
         };

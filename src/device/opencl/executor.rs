@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use crate::device::backend::{Backend, BackendInfo, BufferSizes, FrameBuffer, MemoryLimits};
 use crate::device::kernels::{self, Mutation};
+use crate::device::launch_check::check_launch;
 use crate::device::opencl::{AnyBuffer, Arg, Buffer, Door, Kernel as DeviceKernel, Launch, Limits, ProgramSource};
 use crate::device::profiles::Choices;
 use crate::device::stage::{Binding, Items, Kernel};
@@ -31,6 +32,7 @@ pub struct OpenClBackend {
     mutation: Option<Mutation>,
     scan_group: u32,
     program_ms: f64,
+    frame: FrameParams,
     /// On doors before this one.
     peak_before: u64,
     monitor: Monitor,
@@ -118,6 +120,7 @@ impl OpenClBackend {
             mutation: None,
             scan_group,
             program_ms: 0.0,
+            frame: bytemuck::Zeroable::zeroed(),
             peak_before: 0,
             monitor: monitor.clone(),
         };
@@ -313,6 +316,7 @@ impl Backend for OpenClBackend {
             self.buffers = Some((*sizes, on_device));
         }
         self.flavour.count = sizes.counters > 0;
+        self.frame = *frame;
         match &self.scene {
             Some(scene) => self.door.write(&scene.frame, 0, std::slice::from_ref(frame)),
             None => Ok(()),
@@ -321,7 +325,8 @@ impl Backend for OpenClBackend {
 
     fn run(&mut self, kernel: Kernel, step: &StepParams) -> Result<()> {
         self.build(kernel)?;
-        let (Some(scene), Some((_, buffers))) = (&self.scene, &self.buffers) else { return Ok(()) };
+        let (Some(scene), Some((sizes, buffers))) = (&self.scene, &self.buffers) else { return Ok(()) };
+        check_launch(kernel, step, &self.frame, sizes)?;
         let device_kernel = &self.kernels[&(kernel, self.flavour)];
         let mut args: Vec<Arg> = Vec::with_capacity(20);
         for binding in kernel.bindings() {

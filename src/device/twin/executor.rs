@@ -5,6 +5,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use crate::device::backend::{Backend, BackendInfo, BufferSizes, FrameBuffer, MemoryLimits};
+use crate::device::launch_check::check_launch;
 use crate::device::stage::Kernel;
 use crate::device::twin::{self, FrameBuffers, SceneArgs, Words};
 use crate::error::Result;
@@ -119,7 +120,8 @@ impl Backend for TwinBackend {
     }
 
     fn run(&mut self, kernel: Kernel, step: &StepParams) -> Result<()> {
-        let Some(frame) = &self.frame else { return Ok(()) };
+        let (Some(frame), Some(sizes)) = (&self.frame, &self.sizes) else { return Ok(()) };
+        check_launch(kernel, step, frame, sizes)?;
         let started = Instant::now();
         let scene = twin::SceneArgs { traversal: self.traversal, ..scene_args(&self.scene, frame) };
         twin::run(kernel, &scene, step, &self.buffers, &self.monitor)?;

@@ -148,6 +148,10 @@ pub fn step4_tail(scene: &SceneArgs, step: &StepParams, buffers: &FrameBuffers) 
         (0..round.item_count).for_each(|i| step4_mark(scene, &round, i, buffers));
         let mut total = 0;
         let hits = Hits { frame: scene.frame, step: &round, buffers };
+        let wanted = (0..round.item_count).filter(|&i| claimed_by(hits, i)).count() as u32;
+        if wanted > round.list_end - round.list_offset {
+            break;
+        }
         for i in (0..round.item_count).filter(|&i| claimed_by(hits, i)) {
             buffers.list.set(round.list_offset + total, target(hits, i));
             total += 1;

@@ -174,7 +174,7 @@ mod tests {
         assert_eq!(u64::from(frame.plane_pitch), pitch);
         // Plane addresses, lists of both halves and of four directions are 32-bit numbers.
         assert!(pitch * u64::from(PLANE_COUNT) <= u64::from(u32::MAX));
-        assert!(4 * pixels <= u64::from(u32::MAX));
+        assert!(5 * pixels <= u64::from(u32::MAX));
         let have = |words: usize, at_least: u64| {
             assert!(words as u64 >= at_least, "{words} words, not {at_least}: {frame:?}");
             assert!(words.checked_mul(4).is_some_and(|bytes| isize::try_from(bytes).is_ok()), "{words} words");
@@ -183,8 +183,8 @@ mod tests {
         have(sizes.attributes, if attributes { pitch * u64::from(PLANE_COUNT) } else { 0 });
         have(sizes.counters, if counters { pitch } else { 0 });
         have(sizes.list, if attributes { pixels } else { 0 });
-        have(sizes.masks, if attributes { (4 * pixels).div_ceil(32) } else { 0 });
-        have(sizes.sums, sizes.masks as u64);
+        have(sizes.masks, if attributes { (5 * pixels).div_ceil(32) } else { 0 });
+        have(sizes.sums, sizes.masks as u64 + 1);
         for (x, y) in [(0, frame.window_begin), (frame.width - 1, frame.window_begin), (0, frame.window_end - 1)]
             .into_iter()
             .chain([(frame.width - 1, frame.window_end - 1)])

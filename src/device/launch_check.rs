@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! The last look at a launch: whether all that it reads and writes lies within its buffers.
+//!
+//! Kernels trust their parameters. A launch whose items or ranges do not fit is refused here, with the numbers, by every
+//! back end, before it can overwrite anything.
+
+use super::backend::BufferSizes;
+use super::stage::{Binding, Items, Kernel};
+use crate::error::{Error, Result};
+use crate::layout::*;
+
+/// Refuses a launch that would reach beyond buffers of these sizes or beyond the window of the frame.
+///
+/// # Errors
+/// [`Error::LaunchBeyondBuffer`] with the first thing that there is too little of.
+pub fn check_launch(kernel: Kernel, step: &StepParams, frame: &FrameParams, sizes: &BufferSizes) -> Result<()> {
+    let need = |what: &'static str, wanted: u64, have: u64| {
+        if wanted <= have {
+            return Ok(());
+        }
+        Err(Error::LaunchBeyondBuffer { kernel: kernel.name(), what, wanted, have })
+    };
+    let rows = u64::from(frame.window_end.saturating_sub(frame.window_begin));
+    let pitch = u64::from(frame.plane_pitch);
+    let items = u64::from(step.item_count);
+    for binding in kernel.bindings() {
+        match binding {
+            // Full tracing keeps no attributes unless it is asked to.
+            Binding::Attributes if kernel != Kernel::Step1 || step.flags & STEP_STORE != 0 => {
+                need("words of attributes", u64::from(PLANE_COUNT) * pitch, sizes.attributes as u64)?;
+            }
+            Binding::Color => need("words of colour", u64::from(frame.width) * rows, sizes.color as u64)?,
+            Binding::Counters if sizes.counters > 0 => {
+                need("words of counters", u64::from(COUNTER_COUNT) * pitch, sizes.counters as u64)?;
+            }
+            _ => {}
+        }
+    }
+    let list = |end: u64| need("list entries", end, sizes.list as u64);
+    let sums = |end: u64| need("words of sums", end, sizes.sums as u64);
+    let masks = |end: u64| need("mask words", end, sizes.masks as u64);
+    match kernel.items() {
+        Items::Grid => {
+            let end = |origin: u32, step: u32, count: u32| match count {
+                0 => 0,
+                _ => u64::from(origin) + u64::from(step) * u64::from(count - 1) + 1,
+            };
+            need("columns", end(step.origin_x, step.step_x, step.grid_width), u64::from(frame.width))?;
+            need("rows", end(step.origin_y, step.step_y, step.grid_height), u64::from(frame.window_end))?;
+            need("rows above the grid", u64::from(frame.window_begin), u64::from(step.origin_y))
+        }
+        Items::List => match kernel {
+            Kernel::Step4Mark => list(sources_end(step)),
+            Kernel::Step4Sweep => {
+                let lines = if step.step_x != 0 { rows } else { u64::from(frame.width) };
+                need("lines", items, lines)
+            }
+            _ => list(u64::from(step.list_offset) + items),
+        },
+        Items::Chunks => {
+            let chunks = items.div_ceil(32);
+            masks(chunks)?;
+            match kernel {
+                Kernel::Step4Count | Kernel::Step4Scatter => list(sources_end(step))?,
+                _ => {}
+            }
+            match kernel {
+                Kernel::Step2bScatter | Kernel::Step3bScatter | Kernel::Step4Scatter => {
+                    sums(scan_words(chunks, step.scan_group))?;
+                    list(u64::from(step.list_end))
+                }
+                _ => sums(chunks),
+            }
+        }
+        Items::Groups => {
+            let groups = items.div_ceil(u64::from(step.scan_group.max(1)));
+            sums(u64::from(step.sums_offset) + items + groups)
+        }
+        Items::OneGroup => {
+            sums(u64::from(TAIL_SUM_ENDS + TAIL_ROUNDS))?;
+            list(sources_end(step))?;
+            list(u64::from(step.list_end).max(u64::from(step.list_offset)))
+        }
+    }
+}
+
+/// Behind the last list entry whose neighbours a launch of step4 looks at.
+fn sources_end(step: &StepParams) -> u64 {
+    let ways = if step.flags & STEP_BRIDGE != 0 { STEP4_WAYS_MOST } else { 4 };
+    u64::from(step.source_offset) + u64::from(step.item_count.div_ceil(ways))
+}
+
+/// The words of all levels of a scan over `chunks` sums, the count of all included.
+pub(super) fn scan_words(chunks: u64, scan_group: u32) -> u64 {
+    let (mut words, mut level) = (chunks, chunks);
+    loop {
+        level = level.div_ceil(u64::from(scan_group.max(2)));
+        words += level;
+        if level <= 1 {
+            return words;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn frame(width: u32, height: u32) -> FrameParams {
+        let (phase_width, phase_height) = (width.div_ceil(2), height.div_ceil(2));
+        FrameParams {
+            width,
+            height,
+            block: 2,
+            phase_width,
+            phase_height,
+            plane_pitch: 4 * phase_width * phase_height,
+            window_end: height,
+            interior_end: height,
+            ..bytemuck::Zeroable::zeroed()
+        }
+    }
+
+    /// What the launch lacks, and how much it wants.
+    fn lacks(kernel: Kernel, step: StepParams, sizes: &BufferSizes) -> Option<(&'static str, u64)> {
+        match check_launch(kernel, &step, &frame(64, 48), sizes) {
+            Err(Error::LaunchBeyondBuffer { what, wanted, have, .. }) => {
+                assert!(wanted > have);
+                Some((what, wanted))
+            }
+            _ => None,
+        }
+    }
+
+    #[test]
+    fn each_buffer_is_guarded_to_its_last_word() {
+        let pixels = 64 * 48;
+        let fits = BufferSizes::new(&frame(64, 48), true, true, 64).unwrap();
+        let step = StepParams {
+            step_x: 1,
+            step_y: 1,
+            grid_width: 64,
+            grid_height: 48,
+            item_count: pixels,
+            scan_group: 64,
+            flags: STEP_STORE,
+            ..bytemuck::Zeroable::zeroed()
+        };
+        for kernel in Kernel::ALL {
+            let step = match kernel {
+                Kernel::Step4Sweep => StepParams { item_count: 48, ..step },
+                Kernel::Step2bScan | Kernel::Step3bScan | Kernel::Step4Scan => StepParams { item_count: 96, ..step },
+                _ => step,
+            };
+            assert_eq!(lacks(kernel, step, &fits), None, "{}", kernel.name());
+        }
+        let less = |change: fn(&mut BufferSizes)| {
+            let mut sizes = fits;
+            change(&mut sizes);
+            sizes
+        };
+        let attributes = less(|sizes| sizes.attributes -= 1);
+        assert_eq!(lacks(Kernel::Step2a, step, &attributes), Some(("words of attributes", 12 * u64::from(pixels))));
+        assert_eq!(lacks(Kernel::Step1, StepParams { flags: 0, ..step }, &attributes), None);
+        assert_eq!(lacks(Kernel::Step1, step, &less(|s| s.color -= 1)), Some(("words of colour", u64::from(pixels))));
+        let counters = lacks(Kernel::Step2c, step, &less(|sizes| sizes.counters -= 1));
+        assert_eq!(counters, Some(("words of counters", 6 * u64::from(pixels))));
+        let wide = StepParams { grid_width: 65, ..step };
+        assert_eq!(lacks(Kernel::Step3a, wide, &fits), Some(("columns", 65)));
+        assert_eq!(lacks(Kernel::Step2a, StepParams { origin_y: 1, ..step }, &fits), Some(("rows", 49)));
+        let behind = StepParams { list_offset: 1, ..step };
+        assert_eq!(lacks(Kernel::Step2c, behind, &fits), Some(("list entries", u64::from(pixels) + 1)));
+        let source = StepParams { source_offset: pixels, item_count: 5, flags: STEP_BRIDGE, ..step };
+        assert_eq!(lacks(Kernel::Step4Mark, source, &fits), Some(("list entries", u64::from(pixels) + 1)));
+        let scatter = StepParams { item_count: 32, list_end: pixels + 7, ..step };
+        assert_eq!(lacks(Kernel::Step3bScatter, scatter, &fits), Some(("list entries", u64::from(pixels) + 7)));
+        assert_eq!(lacks(Kernel::Step4Tail, scatter, &fits), Some(("list entries", u64::from(pixels) + 7)));
+        // What corrupted the heap once: five items for each of up to 15/16 of the pixels.
+        let first_round = StepParams { item_count: 5 * pixels, flags: STEP_BRIDGE, ..step };
+        assert_eq!(lacks(Kernel::Step4Count, first_round, &fits), None);
+        let small = less(|sizes| sizes.masks = 4 * 64 * 48 / 32);
+        assert_eq!(lacks(Kernel::Step4Count, first_round, &small), Some(("mask words", 480)));
+        let level = StepParams { item_count: 480, sums_offset: 10, ..step };
+        assert!(lacks(Kernel::Step4Scan, level, &BufferSizes { sums: 497, ..fits }).is_some());
+        assert!(lacks(Kernel::Step4Scan, level, &BufferSizes { sums: 498, ..fits }).is_none());
+        assert!(lacks(Kernel::Step4Sweep, StepParams { item_count: 65, ..step }, &fits).is_some());
+    }
+
+    #[test]
+    fn sums_hold_every_level() {
+        assert_eq!(scan_words(1, 256), 2);
+        assert_eq!(scan_words(256, 256), 257);
+        assert_eq!(scan_words(257, 256), 257 + 2 + 1);
+        assert_eq!(scan_words(1000, 2), 1000 + 500 + 250 + 125 + 63 + 32 + 16 + 8 + 4 + 2 + 1);
+    }
+}
