@@ -17,7 +17,7 @@ use rarefy::method::options::{Correction, Mode, RenderOptions, Tolerances};
 use rarefy::prepare::kdtree::{BuildOptions, KdTree};
 use rarefy::prepare::scene_buffers::{SceneBuffers, Shading};
 use rarefy::render::renderer::{DeviceChoice, Keep, Renderer, RendererOptions};
-use rarefy::scene::{Light, Material, Object, Scene, Surface, Texture};
+use rarefy::scene::{Light, Material, Object, Scene, SceneParts, Surface, Texture};
 
 /// Shorthand for a vector.
 pub fn v(x: f32, y: f32, z: f32) -> Vec3 {
@@ -50,12 +50,12 @@ pub const ONCE: [Vec2; 4] = [Vec2::ZERO, Vec2::X, Vec2::ONE, Vec2::Y];
 
 /// A scene under construction. Without lights, under white ambient light, every surface shows its own colour.
 #[derive(Debug, Clone)]
-pub struct SceneBuilder(Scene);
+pub struct SceneBuilder(SceneParts);
 
 impl SceneBuilder {
     /// An empty scene: no lights, ambient light 1, black background, extent 1.
     pub fn new(name: &str) -> Self {
-        let mut scene = Scene { name: name.into(), ..Scene::default() };
+        let mut scene = SceneParts { name: name.into(), ..SceneParts::default() };
         scene.view.ambient = Vec3::ONE;
         SceneBuilder(scene)
     }
@@ -160,9 +160,12 @@ impl SceneBuilder {
     }
 
     /// The scene, with the given extent.
+    ///
+    /// # Panics
+    /// If the scene is not valid.
     pub fn build(mut self, extent: f32) -> Scene {
         self.0.view.extent = extent;
-        self.0
+        Scene::new(self.0).unwrap()
     }
 }
 
@@ -195,11 +198,11 @@ impl Stand {
     /// Makes `scene` ready, with a frame of `width` by `height` and chains of at most `depth` secondary rays.
     pub fn new(scene: &Scene, width: u32, height: u32, depth: u32) -> Self {
         let tree =
-            KdTree::build(&scene.positions, &scene.triangles, &BuildOptions::default(), &rarefy::Monitor::default())
+            KdTree::build(scene.positions(), scene.triangles(), &BuildOptions::default(), &rarefy::Monitor::default())
                 .unwrap();
-        tree.assert_well_formed(&scene.positions, &scene.triangles);
+        tree.assert_well_formed(scene.positions(), scene.triangles());
         let buffers = SceneBuffers::new(scene, tree, Shading::Full).unwrap();
-        let frame = frame_params(&scene.view, &buffers, width, height, 1, depth);
+        let frame = frame_params(scene.view(), &buffers, width, height, 1, depth);
         Stand { buffers, frame }
     }
 

@@ -17,7 +17,7 @@ use rarefy::method::pipeline::{self, PixelCounts};
 use rarefy::prepare::kdtree::{BuildOptions, KdTree};
 use rarefy::prepare::scene_buffers::{SceneBuffers, Shading};
 use rarefy::scene::builtin;
-use rarefy::scene::{Object, Surface, Texture};
+use rarefy::scene::{Object, SceneParts, Surface, Texture};
 
 /// A test that finds no OpenCL fails, unless this variable says `none`.
 pub const WITHOUT_OPENCL: &str = "RAREFY_TEST_OPENCL";
@@ -52,7 +52,7 @@ impl Prepared {
     /// `scene`, by the rules of `shading`.
     pub fn new(scene: Scene, shading: Shading) -> Self {
         let tree =
-            KdTree::build(&scene.positions, &scene.triangles, &BuildOptions::default(), &rarefy::Monitor::default())
+            KdTree::build(scene.positions(), scene.triangles(), &BuildOptions::default(), &rarefy::Monitor::default())
                 .unwrap();
         let buffers = Arc::new(SceneBuffers::new(&scene, tree, shading).unwrap());
         Prepared { scene, buffers }
@@ -91,7 +91,7 @@ impl Prepared {
         let full = options.mode == Mode::Full;
         let block = if full { 1 } else { options.block };
         let (width, height) = (options.width, options.height);
-        let frame = frame_params(&self.scene.view, &self.buffers, width, height, block, options.depth);
+        let frame = frame_params(self.scene.view(), &self.buffers, width, height, block, options.depth);
         if options.band_rows.is_some() {
             return self.draw_in_bands(backend, &frame, options, counters);
         }
@@ -100,7 +100,7 @@ impl Prepared {
         let counts = if full {
             pipeline::full_frame(backend, &frame, true)?
         } else {
-            pipeline::adaptive_frame(backend, &frame, options, self.scene.view.extent)?
+            pipeline::adaptive_frame(backend, &frame, options, self.scene.view().extent)?
         };
         let pixels = backend.read(FrameBuffer::Color, 0..sizes.color)?;
         let planes = backend.read(FrameBuffer::Attributes, 0..sizes.attributes)?;
@@ -127,7 +127,7 @@ impl Prepared {
         };
         let plan = Plan::new(frame, &room, options.band_rows)?;
         let keep = Keep::planes(&[PLANE_CLASS]).and(if counters { Keep::COUNTERS } else { Keep::default() });
-        let (counts, collected) = bands::draw(backend, &plan, options, self.scene.view.extent, keep)?;
+        let (counts, collected) = bands::draw(backend, &plan, options, self.scene.view().extent, keep)?;
         Ok(Drawn { pixels: collected.colors, classes: collected.planes[&PLANE_CLASS].clone(), counts })
     }
 }
@@ -160,8 +160,8 @@ impl Drawn {
 /// The built-in spheres with everything else that a kernel can meet: the clay sphere full of holes, its floor there
 /// twice (two objects, equal distances), a sphere of thin glass, and shadow bits of three lights.
 pub fn zoo() -> Scene {
-    let mut scene = builtin::to_scene("spheres").unwrap();
-    let find = |scene: &Scene, name: &str| scene.materials.iter().position(|m| m.name == name).unwrap();
+    let mut scene = builtin::to_scene("spheres").unwrap().into_parts();
+    let find = |scene: &SceneParts, name: &str| scene.materials.iter().position(|m| m.name == name).unwrap();
     // Holes: a checkerboard of opacity.
     let texels = (0..64u32).map(|i| if (i / 8 + i) % 2 == 0 { 0xff40_80c0 } else { 0x0040_80c0 }).collect();
     scene.textures.push(Texture { name: "holes".into(), width: 8, height: 8, texels });
@@ -203,5 +203,5 @@ pub fn zoo() -> Scene {
     let mut light = scene.view.lights[0];
     light.position = glam::Vec3::new(0.0, 3.0, -4.0);
     scene.view.lights.push(light);
-    scene
+    Scene::new(scene).unwrap()
 }

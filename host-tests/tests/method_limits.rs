@@ -21,7 +21,9 @@ fn a_flat_wall_costs_a_quarter_and_the_border() {
             let mut scene = builtin::to_scene("wall").unwrap();
             if width > 2 * height {
                 // A wide picture shows what is beside the wall, unless the view is narrow.
-                scene.view.camera.fov_y_degrees = 10.0;
+                let mut view = scene.view().clone();
+                view.camera.fov_y_degrees = 10.0;
+                scene.set_view(view).unwrap();
             }
             // With few pixels they lie far apart.
             let options = RenderOptions { width, height, ..adaptive(block, tolerances(10.0)) };
@@ -129,7 +131,7 @@ fn differences_from_means(scene: &Scene, options: &RenderOptions, weight: fn(f64
     let mut renderer = twin_renderer(scene.clone());
     draw(&mut renderer, options);
     let planes: Vec<Vec<u32>> = (0..PLANE_COUNT).map(|p| renderer.plane(p).unwrap()).collect();
-    let camera = scene.view.camera;
+    let camera = scene.view().camera;
     let (eye, forward) = (camera.eye.as_dvec3(), (camera.look_at - camera.eye).as_dvec3().normalize());
     let value = |plane: u32, at: usize| f64::from(f32::from_bits(planes[plane as usize][at]));
     let normal = |at: usize| unpack_normal(planes[PLANE_NORMAL as usize][at]).as_dvec3();

@@ -41,7 +41,7 @@ fn load_view(view: &str) -> rarefy::Result<Scene> {
 #[track_caller]
 fn refused(result: rarefy::Result<Scene>, parts: &[&str]) {
     let message = match result {
-        Ok(scene) => panic!("accepted with warnings {:?}", scene.warnings),
+        Ok(scene) => panic!("accepted with warnings {:?}", scene.warnings()),
         Err(e) => e.to_string(),
     };
     for part in parts {
@@ -53,22 +53,22 @@ fn refused(result: rarefy::Result<Scene>, parts: &[&str]) {
 #[track_caller]
 fn warned(scene: &Scene, parts: &[&str]) {
     let fits = |w: &String| parts.iter().all(|p| w.contains(p));
-    assert!(scene.warnings.iter().any(fits), "no warning has {parts:?}: {:#?}", scene.warnings);
+    assert!(scene.warnings().iter().any(fits), "no warning has {parts:?}: {:#?}", scene.warnings());
 }
 
 /// Sum of the triangles' areas.
 fn area(scene: &Scene) -> f32 {
-    let corners = scene.triangles.iter().map(|t| t.map(|v| scene.positions[v as usize]));
+    let corners = scene.triangles().iter().map(|t| t.map(|v| scene.positions()[v as usize]));
     corners.map(|[a, b, c]| (b - a).cross(c - a).length() * 0.5).sum()
 }
 
 #[test]
 fn the_plain_triangle_loads_without_a_warning() {
     let scene = load_obj(TRIANGLE).unwrap();
-    assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
-    assert_eq!((scene.triangles.len(), scene.objects.len()), (1, 1));
-    assert_eq!(unpack_normal(scene.corner_normals[0][1]), Vec3::Z);
-    assert_eq!(scene.materials[scene.objects[0].material as usize].name, "(default)");
+    assert!(scene.warnings().is_empty(), "{:?}", scene.warnings());
+    assert_eq!((scene.triangles().len(), scene.objects().len()), (1, 1));
+    assert_eq!(unpack_normal(scene.corner_normals()[0][1]), Vec3::Z);
+    assert_eq!(scene.materials()[scene.objects()[0].material as usize].name, "(default)");
 }
 
 #[test]
@@ -151,15 +151,15 @@ fn nothing_to_draw() {
 #[test]
 fn degenerate_triangles_are_dropped_and_counted_once() {
     let scene = load_obj(format!("{TRIANGLE}f 1 1 2\nf 1 2 2\nv 2 0 0\nf 1 2 4\n")).unwrap();
-    assert_eq!(scene.triangles.len(), 1);
-    assert_eq!(scene.warnings.len(), 1);
+    assert_eq!(scene.triangles().len(), 1);
+    assert_eq!(scene.warnings().len(), 1);
     warned(&scene, &["scene.obj", "3 degenerate triangles", "left out"]);
 }
 
 #[test]
 fn lines_and_points_are_left_out_and_told() {
     let scene = load_obj(format!("{TRIANGLE}l 1 2 3\np 1 2\nf 1 2\nf 1\n")).unwrap();
-    assert_eq!(scene.triangles.len(), 1);
+    assert_eq!(scene.triangles().len(), 1);
     warned(&scene, &["scene.obj:5", "2 line and point elements"]);
     warned(&scene, &["scene.obj:7", "2 faces with fewer than three corners"]);
 }
@@ -183,10 +183,11 @@ fn unusual_ways_to_write_the_same_triangle() {
         "v 0 0 0\nv 1 0 0\nv 0 1 0\n# C:\\scenes\\\nf 1 2 3\n",
     ] {
         let scene = load_obj(text).unwrap_or_else(|e| panic!("{text:?}: {e}"));
-        let corners = |s: &Scene| s.triangles.iter().map(|t| t.map(|v| s.positions[v as usize])).collect::<Vec<_>>();
+        let corners =
+            |s: &Scene| s.triangles().iter().map(|t| t.map(|v| s.positions()[v as usize])).collect::<Vec<_>>();
         assert_eq!(corners(&scene), corners(&expected), "{text:?}");
-        assert_eq!(scene.corner_normals, expected.corner_normals, "{text:?}");
-        assert!(scene.warnings.is_empty(), "{text:?}: {:?}", scene.warnings);
+        assert_eq!(scene.corner_normals(), expected.corner_normals(), "{text:?}");
+        assert!(scene.warnings().is_empty(), "{text:?}: {:?}", scene.warnings());
     }
 }
 
@@ -203,11 +204,11 @@ fn polygons_with_many_corners_and_concave_ones_keep_their_area() {
         comb += &format!(" {i}");
     }
     let scene = load_obj(comb).unwrap();
-    assert_eq!(scene.triangles.len(), 2 * teeth);
+    assert_eq!(scene.triangles().len(), 2 * teeth);
     // Under the zigzag from x = 0 to 2 * teeth - 1: mean height 1/2; below it, height 1.
     let expected = (2 * teeth - 1) as f32 * 1.5;
     assert!((area(&scene) - expected).abs() < 0.01, "{} instead of {expected}", area(&scene));
-    assert!(scene.warnings.is_empty());
+    assert!(scene.warnings().is_empty());
 
     let mut disc = String::new();
     for i in 0..1000 {
@@ -216,17 +217,17 @@ fn polygons_with_many_corners_and_concave_ones_keep_their_area() {
     }
     disc += &format!("f {}\n", (1..=1000).map(|i| i.to_string()).collect::<Vec<_>>().join(" "));
     let scene = load_obj(disc).unwrap();
-    assert_eq!(scene.triangles.len(), 998);
+    assert_eq!(scene.triangles().len(), 998);
     assert!((area(&scene) - std::f32::consts::PI).abs() < 1e-3);
-    assert_eq!(unpack_normal(scene.corner_normals[500][0]), Vec3::Y);
+    assert_eq!(unpack_normal(scene.corner_normals()[500][0]), Vec3::Y);
 
     // An arrow head; the fan from its first corner would cover the notch.
     let scene = load_obj("v 0 0 0\nv 2 -1 0\nv 1 0 0\nv 2 1 0\nvt 0 0\nvt .2 0\nvt .3 0\nvt .4 0\nf 2/2 3/3 4/4 1/1\n")
         .unwrap();
     assert_eq!(area(&scene), 1.0);
-    for (triangle, texcoords) in scene.triangles.iter().zip(&scene.corner_texcoords) {
+    for (triangle, texcoords) in scene.triangles().iter().zip(scene.corner_texcoords()) {
         for (v, t) in triangle.iter().zip(texcoords) {
-            let p = scene.positions[*v as usize];
+            let p = scene.positions()[*v as usize];
             let x = if p == Vec3::ZERO { 0.0 } else { 0.3 + 0.1 * p.y };
             assert!((t.x - x).abs() < 1e-6, "corner {p} has texture coordinate {t}");
         }
@@ -237,7 +238,7 @@ fn polygons_with_many_corners_and_concave_ones_keep_their_area() {
 fn a_polygon_that_crosses_itself_is_told() {
     let bow_tie = "o tie\nv 0 0 0\nv 2 2 0\nv 2 0 0\nv 0 1 0\nf 1 2 3 4\n";
     let scene = load_obj(bow_tie).unwrap();
-    assert!(!scene.triangles.is_empty());
+    assert!(!scene.triangles().is_empty());
     warned(&scene, &["1 polygons cross themselves", "`tie`", "triangulate them"]);
 }
 
@@ -246,21 +247,21 @@ fn attributes_that_only_some_faces_have() {
     // tobj on its own gives the second triangle the normal and texture coordinate of the corner before it.
     let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt .5 .5\nvn 0 1 0\nf 1/1/1 2/1/1 3/1/1\nf 1 2 3\nf 1//1 2//1 3//1\nf 1/1 2/1 3/1\n";
     let scene = load_obj(text).unwrap();
-    let normal = |t: usize| unpack_normal(scene.corner_normals[t][2]);
+    let normal = |t: usize| unpack_normal(scene.corner_normals()[t][2]);
     assert_eq!([normal(0), normal(1), normal(2), normal(3)], [Vec3::Y, Vec3::Z, Vec3::Y, Vec3::Z]);
-    let texcoord = |t: usize| scene.corner_texcoords[t][2];
+    let texcoord = |t: usize| scene.corner_texcoords()[t][2];
     let half = Vec2::splat(0.5);
     assert_eq!([texcoord(0), texcoord(1), texcoord(2), texcoord(3)], [half, Vec2::ZERO, Vec2::ZERO, half]);
-    assert_eq!(scene.notes.triangles_without_normals, 2);
+    assert_eq!(scene.notes().triangles_without_normals, 2);
     // Lists that begin after the first face of a group.
     let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nvt .5 .5\nvn 0 1 0\nf 1/1/1 2/1/1 3/1/1\n";
     let scene = load_obj(text).unwrap();
     assert_eq!(
-        [unpack_normal(scene.corner_normals[0][0]), unpack_normal(scene.corner_normals[1][0])],
+        [unpack_normal(scene.corner_normals()[0][0]), unpack_normal(scene.corner_normals()[1][0])],
         [Vec3::Z, Vec3::Y]
     );
-    assert_eq!((scene.corner_texcoords[0][0], scene.corner_texcoords[1][0]), (Vec2::ZERO, half));
-    assert_eq!(scene.objects.len(), 1);
+    assert_eq!((scene.corner_texcoords()[0][0], scene.corner_texcoords()[1][0]), (Vec2::ZERO, half));
+    assert_eq!(scene.objects().len(), 1);
 }
 
 #[test]
@@ -275,15 +276,18 @@ fn objects_are_groups_in_materials_and_names_have_spaces() {
         ("view.json", VIEW.as_bytes()),
     ])
     .unwrap();
-    let objects: Vec<_> =
-        scene.objects.iter().map(|o| (o.name.as_str(), scene.materials[o.material as usize].name.as_str())).collect();
+    let objects: Vec<_> = scene
+        .objects()
+        .iter()
+        .map(|o| (o.name.as_str(), scene.materials()[o.material as usize].name.as_str()))
+        .collect();
     let (table, lamp) = ("the big table", "lamp");
     assert_eq!(objects, [(table, "dark wood"), (table, "light wood"), (lamp, "light wood")]);
-    assert_eq!(scene.triangle_objects, [0, 1, 2, 1]);
-    assert_eq!(scene.notes.duplicate_names, [table]);
-    assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
+    assert_eq!(scene.triangle_objects(), [0, 1, 2, 1]);
+    assert_eq!(scene.notes().duplicate_names, [table]);
+    assert!(scene.warnings().is_empty(), "{:?}", scene.warnings());
     // Vertices are shared between the materials of one object.
-    assert_eq!(scene.triangles[0], scene.triangles[1]);
+    assert_eq!(scene.triangles()[0], scene.triangles()[1]);
 }
 
 #[test]
@@ -293,8 +297,8 @@ fn a_missing_mtl_or_material_is_drawn_grey_and_told() {
     let scene = load(&[("scene.obj", obj.as_bytes()), ("view.json", view.as_bytes())]).unwrap();
     warned(&scene, &["scene.obj:1", "MTL file `gone.mtl` not found", "grey"]);
     warned(&scene, &["scene.obj:2", "no MTL file defines material `a` and 1 more"]);
-    assert_eq!(scene.objects.len(), 2);
-    let surface = |o: usize| scene.materials[scene.objects[o].material as usize].surface;
+    assert_eq!(scene.objects().len(), 2);
+    let surface = |o: usize| scene.materials()[scene.objects()[o].material as usize].surface;
     assert_eq!((surface(0), surface(1)), (Surface::Opaque, Surface::Mirror));
 }
 
@@ -317,20 +321,20 @@ fn load_texture(mtl: &str, name: &str, bytes: &[u8]) -> rarefy::Result<Scene> {
 fn textures_arrive_and_masks_take_the_right_channel() {
     let mtl = "newmtl a\nmap_Kd -o 1 2 my pic.png\nmap_d my pic.png\n";
     let scene = load_texture(mtl, "my pic.png", &png()).unwrap();
-    assert!(scene.warnings.len() == 1 && scene.warnings[0].contains("map_Kd's are used"), "{:?}", scene.warnings);
-    let m = &scene.materials[scene.objects[0].material as usize];
+    assert!(scene.warnings().len() == 1 && scene.warnings()[0].contains("map_Kd's are used"), "{:?}", scene.warnings());
+    let m = &scene.materials()[scene.objects()[0].material as usize];
     assert_eq!((m.diffuse, m.surface), (Vec3::ONE, Surface::Opaque));
-    assert_eq!(scene.corner_texcoords[0][0], Vec2::new(1.0, 2.0));
-    let texture = &scene.textures[m.diffuse_texture.unwrap() as usize];
+    assert_eq!(scene.corner_texcoords()[0][0], Vec2::new(1.0, 2.0));
+    let texture = &scene.textures()[m.diffuse_texture.unwrap() as usize];
     assert_eq!((texture.width, texture.height, texture.texels.as_slice()), (2, 1, &[0xff00_00ff, 0x64ff_ffff][..]));
-    let mask = &scene.textures[m.cutout_texture.unwrap() as usize];
+    let mask = &scene.textures()[m.cutout_texture.unwrap() as usize];
     assert_eq!((mask.texels[0] >> 24, mask.texels[1] >> 24), (255, 100));
     // Without alpha: luminance.
     let mut grey = Vec::new();
     let picture = image::RgbImage::from_raw(2, 1, vec![0, 0, 0, 200, 200, 200]).unwrap();
     picture.write_to(&mut std::io::Cursor::new(&mut grey), image::ImageFormat::Png).unwrap();
     let scene = load_texture("newmtl a\nmap_d g.png\n", "g.png", &grey).unwrap();
-    let mask = &scene.textures[0];
+    let mask = &scene.textures()[0];
     assert_eq!((mask.texels[0] >> 24, mask.texels[1] >> 24), (0, 200));
 }
 
@@ -338,9 +342,9 @@ fn textures_arrive_and_masks_take_the_right_channel() {
 fn a_missing_or_foreign_texture_is_flat_and_told() {
     let scene = load_texture("newmtl a\nKd .2 .3 .4\nmap_Kd gone.png\n", "x", b"").unwrap();
     warned(&scene, &["gone.png", "texture not found", "plain colour"]);
-    let m = &scene.materials[scene.objects[0].material as usize];
+    let m = &scene.materials()[scene.objects()[0].material as usize];
     assert_eq!((m.diffuse_texture, m.diffuse), (None, Vec3::new(0.2, 0.3, 0.4)));
-    assert_eq!(scene.notes.missing_textures, ["gone.png"]);
+    assert_eq!(scene.notes().missing_textures, ["gone.png"]);
     let scene = load_texture("newmtl a\nmap_Kd a.tga\n", "a.tga", b"\0\0\x02not a picture that is read").unwrap();
     warned(&scene, &["a.tga", "neither PNG nor JPEG", "convert it to PNG"]);
 }
@@ -393,7 +397,7 @@ fn surfaces_follow_illum_where_the_view_has_no_lists() {
         let files: [(&str, &[u8]); 3] =
             [("scene.obj", obj.as_bytes()), ("m.mtl", mtl.as_bytes()), ("view.json", view.as_bytes())];
         let scene = load(&files).unwrap();
-        (scene.materials[0].surface, scene.warnings.len())
+        (scene.materials()[0].surface, scene.warnings().len())
     };
     for (illum, surface) in [(2, Surface::Opaque), (3, Surface::Mirror), (5, Surface::Mirror), (4, Surface::Glass)] {
         assert_eq!(kind(&format!("newmtl a\nillum {illum}\n"), ""), (surface, 0));
@@ -433,7 +437,7 @@ fn views_that_make_no_sense() {
 
     let light = r#"{"position": [0,1,0]}"#;
     let lights = |n: usize| format!(r#"{{"lights": [{}]}}"#, vec![light; n].join(","));
-    assert_eq!(load_view(&lights(32)).unwrap().view.lights.len(), 32);
+    assert_eq!(load_view(&lights(32)).unwrap().view().lights.len(), 32);
     refused(load_view(&lights(33)), &["view.json: lights: ", "33 lights", "at most 32"]);
     for (text, parts) in [
         (r#"{"lights": [{"intensity": 1}]}"#, ["lights[0].position", "missing"]),
@@ -478,9 +482,9 @@ fn unknown_keys_and_names_are_told_and_the_rest_is_used() {
     warned(&scene, &["view.json", "unknown key `camera.roll`"]);
     warned(&scene, &["view.json", "mirror_materials: no material is named `Mirro`"]);
     warned(&scene, &["1 triangles", "view.json says 7"]);
-    assert_eq!((scene.view.background, scene.view.ambient), (Vec3::new(0.1, 0.2, 0.3), Vec3::splat(0.5)));
-    assert_eq!(scene.view.lights[0].intensity, Vec3::splat(9.0));
-    assert_eq!((scene.view.camera.eye, scene.view.camera.fov_y_degrees), (Vec3::new(0.0, 0.0, 5.0), 45.0));
+    assert_eq!((scene.view().background, scene.view().ambient), (Vec3::new(0.1, 0.2, 0.3), Vec3::splat(0.5)));
+    assert_eq!(scene.view().lights[0].intensity, Vec3::splat(9.0));
+    assert_eq!((scene.view().camera.eye, scene.view().camera.fov_y_degrees), (Vec3::new(0.0, 0.0, 5.0), 45.0));
 }
 
 #[test]
@@ -497,14 +501,14 @@ fn without_a_view_camera_and_light_are_fitted() {
     obj += "f 1 2 3\n";
     let dir = folder(&[("cube.obj", obj.as_bytes())]);
     let scene = scene::load(&dir.path().join("cube.obj"), &rarefy::Monitor::default()).unwrap();
-    assert_eq!(scene.name, "cube");
-    assert!((scene.view.extent - 1.0).abs() < 0.05, "extent {}", scene.view.extent);
+    assert_eq!(scene.name(), "cube");
+    assert!((scene.view().extent - 1.0).abs() < 0.05, "extent {}", scene.view().extent);
     for what in ["`extent`", "`camera`", "`lights`"] {
         warned(&scene, &["cube.obj (no view.json)", what]);
     }
-    let camera = scene.view.camera;
+    let camera = scene.view().camera;
     assert!((camera.look_at - Vec3::splat(0.5)).length() < 0.05);
     let distance = (camera.eye - camera.look_at).length();
     assert!(distance > 1.0 && distance < 4.0);
-    assert_eq!(scene.view.lights.len(), 1);
+    assert_eq!(scene.view().lights.len(), 1);
 }

@@ -87,15 +87,15 @@ proptest! {
         let (view, picture) = (mutate(VIEW.as_bytes(), view.as_slice()), mutate(&png(), picture.as_slice()));
         let loaded = load(&[("scene.obj", &obj), ("m.mtl", &mtl), ("view.json", &view), ("t.png", &picture)]);
         if let Ok(scene) = loaded {
-            prop_assert!(!scene.triangles.is_empty());
-            prop_assert!(scene.positions.iter().all(|p| p.is_finite()));
-            prop_assert!(scene.corner_texcoords.iter().flatten().all(|t| t.is_finite()));
-            prop_assert!(scene.triangles.iter().flatten().all(|&v| (v as usize) < scene.positions.len()));
-            prop_assert!(scene.triangle_objects.iter().all(|&o| (o as usize) < scene.objects.len()));
-            prop_assert!(scene.objects.iter().all(|o| (o.material as usize) < scene.materials.len()));
-            for m in &scene.materials {
+            prop_assert!(!scene.triangles().is_empty());
+            prop_assert!(scene.positions().iter().all(|p| p.is_finite()));
+            prop_assert!(scene.corner_texcoords().iter().flatten().all(|t| t.is_finite()));
+            prop_assert!(scene.triangles().iter().flatten().all(|&v| (v as usize) < scene.positions().len()));
+            prop_assert!(scene.triangle_objects().iter().all(|&o| (o as usize) < scene.objects().len()));
+            prop_assert!(scene.objects().iter().all(|o| (o.material as usize) < scene.materials().len()));
+            for m in scene.materials() {
                 let textures = m.diffuse_texture.iter().chain(&m.cutout_texture);
-                prop_assert!(textures.copied().all(|t| (t as usize) < scene.textures.len()));
+                prop_assert!(textures.copied().all(|t| (t as usize) < scene.textures().len()));
                 prop_assert!(m.diffuse.is_finite() && m.shininess >= 0.0 && m.index_of_refraction >= 1.0);
             }
             scene::doctor::examine(&scene);
@@ -110,6 +110,6 @@ fn the_unchanged_files_load() {
     let files: [(&str, &[u8]); 4] =
         [("scene.obj", OBJ.as_bytes()), ("m.mtl", MTL.as_bytes()), ("view.json", VIEW.as_bytes()), ("t.png", &png)];
     let scene = load(&files).unwrap();
-    assert_eq!((scene.triangles.len(), scene.objects.len(), scene.textures.len()), (4, 2, 2));
-    assert_eq!(scene.objects[1].name, "lamp   two");
+    assert_eq!((scene.triangles().len(), scene.objects().len(), scene.textures().len()), (4, 2, 2));
+    assert_eq!(scene.objects()[1].name, "lamp   two");
 }

@@ -22,7 +22,7 @@ fn load(folder: &Path, name: &str) -> Scene {
 }
 
 fn material<'a>(scene: &'a Scene, name: &str) -> &'a scene::Material {
-    scene.materials.iter().find(|m| m.name == name).unwrap()
+    scene.materials().iter().find(|m| m.name == name).unwrap()
 }
 
 #[test]
@@ -37,16 +37,16 @@ fn all_six_load_whole() {
         ("kitchen", 1_050_505, 289, 11),
     ] {
         let scene = load(&folder, name);
-        println!("{name}: {:?} {:#?}", scene.notes, scene.warnings);
-        assert_eq!(scene.name, name);
-        assert_eq!(scene.triangles.len() + scene.notes.dropped_triangles, triangles, "{name}");
-        assert_eq!(scene.objects.len(), groups, "{name}");
-        assert_eq!(scene.textures.len(), textures, "{name}");
-        for lengths in [scene.corner_normals.len(), scene.corner_texcoords.len(), scene.triangle_objects.len()] {
-            assert_eq!(lengths, scene.triangles.len(), "{name}");
+        println!("{name}: {:?} {:#?}", scene.notes(), scene.warnings());
+        assert_eq!(scene.name(), name);
+        assert_eq!(scene.triangles().len() + scene.notes().dropped_triangles, triangles, "{name}");
+        assert_eq!(scene.objects().len(), groups, "{name}");
+        assert_eq!(scene.textures().len(), textures, "{name}");
+        for lengths in [scene.corner_normals().len(), scene.corner_texcoords().len(), scene.triangle_objects().len()] {
+            assert_eq!(lengths, scene.triangles().len(), "{name}");
         }
-        assert!(scene.triangles.iter().flatten().all(|&v| (v as usize) < scene.positions.len()));
-        assert!(scene.notes.missing_textures.is_empty() && scene.notes.extent_given);
+        assert!(scene.triangles().iter().flatten().all(|&v| (v as usize) < scene.positions().len()));
+        assert!(scene.notes().missing_textures.is_empty() && scene.notes().extent_given);
     }
 }
 
@@ -60,7 +60,7 @@ fn surfaces_follow_the_lists_of_the_view() {
     assert_eq!(material(&living_room, "Glass").surface, Surface::Glass);
     assert_eq!(material(&living_room, "FireplaceGlass").surface, Surface::Mirror);
     let mask = material(&living_room, "Leaves").cutout_texture.unwrap();
-    let texels = &living_room.textures[mask as usize].texels;
+    let texels = &living_room.textures()[mask as usize].texels;
     let holes = texels.iter().filter(|t| (**t >> 24) < 128).count();
     assert!(holes * 10 > texels.len() && holes * 10 < texels.len() * 9, "{holes} of {} texels are holes", texels.len());
 }

@@ -36,7 +36,12 @@ fn compare(
     for (options, counters) in frames {
         prepared.draw(&mut parity, &options, counters).unwrap();
         let clean = parity.results.iter().all(|r| r.different == 0);
-        assert!(clean, "{}: {options:?}, counters {counters}: {:#?}", prepared.scene.name, differing(&parity.results));
+        assert!(
+            clean,
+            "{}: {options:?}, counters {counters}: {:#?}",
+            prepared.scene.name(),
+            differing(&parity.results)
+        );
     }
     parity.results
 }
@@ -236,7 +241,7 @@ fn fast_build_is_close(scene: Scene, side: u32) {
     let adaptive_apart = adaptive.pixels_apart(&adaptive_twin, 1);
     println!(
         "{} {side}x{side}: beyond 1/255: full {apart}, adaptive {adaptive_apart}; other classes {classes}",
-        prepared.scene.name
+        prepared.scene.name()
     );
     assert!(apart as f64 <= 1.0e-4 * pixels, "{apart} pixels beyond 1/255");
     assert!(classes as f64 <= 1.0e-3 * pixels, "{classes} pixels in another class");

@@ -84,13 +84,13 @@ fn odd_stand(seed: u64, slice: bool) -> Stand {
     let count = 1 + random.below(120);
     let scene = random_scene(&mut random, count, 0.4);
     let mut stand = Stand::new(&scene, 1, 1, 0);
-    let corners = |id: usize| scene.triangles[id].map(|i| scene.positions[i as usize]);
-    let boxes = (0..scene.triangles.len()).map(corners).map(|[a, b, c]| [a.min(b).min(c), a.max(b).max(c)]).collect();
+    let corners = |id: usize| scene.triangles()[id].map(|i| scene.positions()[i as usize]);
+    let boxes = (0..scene.triangles().len()).map(corners).map(|[a, b, c]| [a.min(b).min(c), a.max(b).max(c)]).collect();
     let (lo, hi) = (stand.buffers.tree.bounds_min, stand.buffers.tree.bounds_max);
     let tree =
         KdTree { nodes: vec![KdNode::leaf(0, 0); 2], leaf_triangles: Vec::new(), bounds_min: lo, bounds_max: hi };
     let mut grower = Grower { random: &mut random, boxes, tree, slice };
-    let ids: Vec<u32> = (0..scene.triangles.len() as u32).collect();
+    let ids: Vec<u32> = (0..scene.triangles().len() as u32).collect();
     grower.grow(0, Vec3::from(lo), Vec3::from(hi), &ids, 0);
     stand.buffers.tree = grower.tree;
     stand
@@ -280,13 +280,13 @@ fn steps_in_real_scenes() {
     println!("steps at 512x512, full / adaptive: private stack, and how many times as many otherwise");
     for path in scenes {
         let prepared = Prepared::new(rarefy::scene::load(&path, &rarefy::Monitor::default()).unwrap(), Shading::Full);
-        let mut line = format!("{:12}", prepared.scene.name);
+        let mut line = format!("{:12}", prepared.scene.name());
         for options in [RenderOptions { mode: Mode::Full, ..sized(512, 512) }, sized(512, 512)] {
             let (least, expected) = steps(&prepared, Traversal::PrivateStack, &options);
             line += &format!("  {:7.2} M", least as f64 / 1e6);
             for traversal in WITHOUT_ARRAYS {
                 let (count, pixels) = steps(&prepared, traversal, &options);
-                assert!(pixels == expected, "{}: {}", prepared.scene.name, traversal.name());
+                assert!(pixels == expected, "{}: {}", prepared.scene.name(), traversal.name());
                 line += &format!("  {} {:.3}", traversal.name(), count as f64 / least as f64);
             }
         }

@@ -477,8 +477,10 @@ fn a_texture_hangs_the_right_way_up_and_repeats() {
 fn pictures_have_their_corners_where_they_belong() {
     // The camera sees the middle of the square: x to the right, y up.
     let mut scene = painted(1.0);
-    let camera = &mut scene.view.camera;
+    let mut view = scene.view().clone();
+    let camera = &mut view.camera;
     (camera.eye, camera.look_at, camera.fov_y_degrees) = (v(0.5, 0.5, 1.0), v(0.5, 0.5, 0.0), 40.0);
+    scene.set_view(view).unwrap();
     for mode in [Mode::Full, Mode::Adaptive] {
         let frame = draw(&mut twin_renderer(scene.clone()), &options(mode, 40, 40, 2));
         let strongest = |x: usize, y: usize| {

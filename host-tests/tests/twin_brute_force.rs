@@ -17,7 +17,7 @@ use rarefy::scene::{Material, Scene, Surface};
 use rarefy_host_tests::fixtures::{Random, SceneBuilder, Stand, matte, v};
 
 fn corners(scene: &Scene, id: usize) -> [Vec3; 3] {
-    scene.triangles[id].map(|i| scene.positions[i as usize])
+    scene.triangles()[id].map(|i| scene.positions()[i as usize])
 }
 
 /// Moeller and Trumbore in floats: (t, u, v) where the line crosses the triangle.
@@ -54,12 +54,12 @@ fn on_edge(scene: &Scene, o: Vec3, d: Vec3, id: usize) -> bool {
 
 /// Is the texel at the hit a hole? `None` too near to a texel's border to say.
 fn hole(scene: &Scene, id: usize, u: f32, v: f32) -> Option<bool> {
-    let object = scene.triangle_objects[id] as usize;
-    let Some(texture) = scene.materials[scene.objects[object].material as usize].cutout_texture else {
+    let object = scene.triangle_objects()[id] as usize;
+    let Some(texture) = scene.materials()[scene.objects()[object].material as usize].cutout_texture else {
         return Some(false);
     };
-    let texture = &scene.textures[texture as usize];
-    let [a, b, c] = scene.corner_texcoords[id].map(|t| t.as_dvec2());
+    let texture = &scene.textures()[texture as usize];
+    let [a, b, c] = scene.corner_texcoords()[id].map(|t| t.as_dvec2());
     let at = a + (b - a) * f64::from(u) + (c - a) * f64::from(v);
     let x = (at.x - at.x.floor()) * f64::from(texture.width);
     let y = (1.0 - (at.y - at.y.floor())) * f64::from(texture.height);
@@ -70,15 +70,15 @@ fn hole(scene: &Scene, id: usize, u: f32, v: f32) -> Option<bool> {
 }
 
 fn casts_no_shadow(scene: &Scene, id: usize) -> bool {
-    let object = scene.triangle_objects[id] as usize;
-    let surface = scene.materials[scene.objects[object].material as usize].surface;
+    let object = scene.triangle_objects()[id] as usize;
+    let surface = scene.materials()[scene.objects()[object].material as usize].surface;
     matches!(surface, Surface::Glass | Surface::ThinGlass)
 }
 
 /// All hits of a ray, by the plain loop. `None` where a hit is too near to a texel's border to say.
 fn all_hits(scene: &Scene, o: Vec3, d: Vec3) -> Option<Vec<(f32, usize)>> {
     let mut hits = Vec::new();
-    for id in 0..scene.triangles.len() {
+    for id in 0..scene.triangles().len() {
         if let Some((t, u, v)) = cross_float(o, d, corners(scene, id))
             && !hole(scene, id, u, v)?
         {
@@ -165,7 +165,7 @@ fn shoot(scene: &Scene, stand: &Stand, random: &mut Random, count: usize) -> Tal
     let splits: Vec<KdNode> = tree.nodes.iter().copied().filter(|n| !n.is_leaf()).collect();
     let axes = [Vec3::X, Vec3::Y, Vec3::Z];
     for i in 0..count {
-        let [a, b, c] = corners(scene, random.below(scene.triangles.len()));
+        let [a, b, c] = corners(scene, random.below(scene.triangles().len()));
         let (u, w) = (random.unit(), random.unit());
         let on_surface = a + (b - a) * (u * (1.0 - w)) + (c - a) * w;
         let inside = lo + (hi - lo) * random.point(1.0);

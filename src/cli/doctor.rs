@@ -17,13 +17,13 @@ pub fn run(args: &DoctorArgs, interrupt: &Interrupt) -> Result<()> {
     let json = args.json.as_deref();
     let summary = format!(
         "{}: {} triangles, {} objects, {} materials, {} textures, {} lights, extent {}",
-        scene.name,
-        scene.triangles.len(),
-        scene.objects.len(),
-        scene.materials.len(),
-        scene.textures.len(),
-        scene.view.lights.len(),
-        scene.view.extent
+        scene.name(),
+        scene.triangles().len(),
+        scene.objects().len(),
+        scene.materials().len(),
+        scene.textures().len(),
+        scene.view().lights.len(),
+        scene.view().extent
     );
     say(json, &summary);
     for finding in &findings {
@@ -42,7 +42,10 @@ pub fn run(args: &DoctorArgs, interrupt: &Interrupt) -> Result<()> {
                     json!({"severity": if warning { "warning" } else { "note" }, "topic": f.topic, "message": f.message})
                 })
                 .collect();
-            write_json(path, &json!({"scene": scene.name, "triangles": scene.triangles.len(), "findings": findings}))
+            write_json(
+                path,
+                &json!({"scene": scene.name(), "triangles": scene.triangles().len(), "findings": findings}),
+            )
         }
         None => Ok(()),
     }

@@ -104,7 +104,7 @@ pub fn make_renderer(name: &str, options: &RendererOptions, interrupt: &Interrup
         let started = Instant::now();
         let scene = load(name, monitor)?;
         let load_ms = started.elapsed().as_secs_f64() * 1e3;
-        let warnings = scene.warnings.clone();
+        let warnings = scene.warnings().to_vec();
         Ok((Renderer::new(scene, options, monitor)?, load_ms, warnings))
     })?;
     warn_all(&warnings);

@@ -74,7 +74,7 @@ impl SceneBuffers {
         let anchor = shading == Shading::Anchor;
         let (textures, texels) = flatten_textures(scene)?;
         let mut lights: Vec<_> = scene
-            .view
+            .view()
             .lights
             .iter()
             .map(|l| layout::Light { position: float4(l.position, 0.0), intensity: float4(l.intensity, 0.0) })
@@ -83,33 +83,33 @@ impl SceneBuffers {
         if lights.is_empty() {
             lights.push(layout::Light { position: [0.0; 4], intensity: [0.0; 4] });
         }
-        let materials: Vec<_> = scene.materials.iter().map(|m| flatten_material(m, anchor)).collect();
-        let object_materials = scene.objects.iter().map(|o| o.material).collect();
-        let mut triangles = Vec::with_capacity(scene.triangles.len());
-        let mut triangle_shading = Vec::with_capacity(scene.triangles.len());
-        for (id, corners) in scene.triangles.iter().enumerate() {
+        let materials: Vec<_> = scene.materials().iter().map(|m| flatten_material(m, anchor)).collect();
+        let object_materials = scene.objects().iter().map(|o| o.material).collect();
+        let mut triangles = Vec::with_capacity(scene.triangles().len());
+        let mut triangle_shading = Vec::with_capacity(scene.triangles().len());
+        for (id, corners) in scene.triangles().iter().enumerate() {
             if id % TRIANGLES_AT_ONCE == 0 {
                 monitor.check()?;
             }
-            let [a, b, c] = corners.map(|i| scene.positions[i as usize]);
-            let object = scene.triangle_objects[id];
-            let material = scene.objects[object as usize].material;
-            let flags = if anchor { 0 } else { triangle_flags(&scene.materials[material as usize]) };
+            let [a, b, c] = corners.map(|i| scene.positions()[i as usize]);
+            let object = scene.triangle_objects()[id];
+            let material = scene.objects()[object as usize].material;
+            let flags = if anchor { 0 } else { triangle_flags(&scene.materials()[material as usize]) };
             triangles.push(Triangle {
                 corner: float4(a, f32::from_bits(flags)),
                 edge1: float4(b - a, 0.0),
                 edge2: float4(c - a, 0.0),
             });
-            let [t0, t1, t2] = scene.corner_texcoords[id];
+            let [t0, t1, t2] = scene.corner_texcoords()[id];
             triangle_shading.push(TriangleShading {
-                normals: scene.corner_normals[id],
+                normals: scene.corner_normals()[id],
                 object,
                 texcoords: [t0.x, t0.y, t1.x, t1.y, t2.x, t2.y],
                 material,
                 pad0: 0,
             });
         }
-        let epsilon = if anchor { 1.0e-4 * diagonal(scene) } else { 1.0e-5 * scene.view.extent };
+        let epsilon = if anchor { 1.0e-4 * diagonal(scene) } else { 1.0e-5 * scene.view().extent };
         Ok(SceneBuffers {
             tree,
             lights,
@@ -143,7 +143,7 @@ impl SceneBuffers {
 
 fn diagonal(scene: &Scene) -> f32 {
     let (mut lo, mut hi) = (Vec3::splat(f32::MAX), Vec3::splat(f32::MIN));
-    for p in &scene.positions {
+    for p in scene.positions() {
         lo = lo.min(*p);
         hi = hi.max(*p);
     }
@@ -200,11 +200,11 @@ fn check_texels(name: &str, total: u64, last_address: u64) -> Result<()> {
 }
 
 fn flatten_textures(scene: &Scene) -> Result<(Vec<layout::Texture>, Vec<u32>)> {
-    let total: u64 = scene.textures.iter().map(|t| t.texels.len() as u64).sum();
-    check_texels(&scene.name, total, usize::MAX as u64)?;
-    let mut textures = Vec::with_capacity(scene.textures.len().max(1));
+    let total: u64 = scene.textures().iter().map(|t| t.texels.len() as u64).sum();
+    check_texels(scene.name(), total, usize::MAX as u64)?;
+    let mut textures = Vec::with_capacity(scene.textures().len().max(1));
     let mut texels = Vec::with_capacity(total as usize);
-    for t in &scene.textures {
+    for t in scene.textures() {
         textures.push(layout::Texture { offset: texels.len() as u32, width: t.width, height: t.height, pad0: 0 });
         texels.extend_from_slice(&t.texels);
     }

@@ -99,13 +99,13 @@ impl Renderer {
         monitor.restart();
         let started = Instant::now();
         let part = monitor.part("kd-tree", 0.0, 0.8);
-        let tree = KdTree::build(&scene.positions, &scene.triangles, &BuildOptions::default(), &part)?;
+        let tree = KdTree::build(scene.positions(), scene.triangles(), &BuildOptions::default(), &part)?;
         let kdtree_ms = started.elapsed().as_secs_f64() * 1e3;
         let tree_statistics = tree.statistics();
         let started = Instant::now();
         let part = monitor.part("device", 0.8, 1.0);
         let buffers = Arc::new(SceneBuffers::watched(&scene, tree, options.shading, &part)?);
-        let (name, view, triangle_count) = (scene.name.clone(), scene.view.clone(), scene.triangles.len());
+        let (name, view, triangle_count) = (scene.name().to_owned(), scene.view().clone(), scene.triangles().len());
         drop(scene);
         let mut notices = Vec::new();
         let device = Device::open(&buffers, options, &mut notices, &part)?;

@@ -43,7 +43,7 @@ const OUTLIER_RATIO: f32 = 3.0;
 pub fn examine(scene: &Scene) -> Vec<Finding> {
     let mut findings = Vec::new();
     let mut tell = |severity, topic, message: String| findings.push(Finding { severity, topic, message });
-    for warning in &scene.warnings {
+    for warning in scene.warnings() {
         tell(Severity::Warning, "loading", warning.clone());
     }
     attributes(scene, &mut tell);
@@ -70,8 +70,8 @@ fn some_of<S: AsRef<str>>(names: &[S]) -> String {
 }
 
 fn attributes(scene: &Scene, tell: Tell) {
-    let notes = &scene.notes;
-    let total = scene.triangles.len();
+    let notes = scene.notes();
+    let total = scene.triangles().len();
     if notes.triangles_without_normals > 0 {
         let share = percent(notes.triangles_without_normals, total);
         let crease = super::import::normals::CREASE_DEGREES;
@@ -93,7 +93,7 @@ fn attributes(scene: &Scene, tell: Tell) {
 }
 
 fn materials(scene: &Scene, tell: Tell) {
-    let mut names: Vec<&str> = scene.materials.iter().map(|m| m.name.as_str()).collect();
+    let mut names: Vec<&str> = scene.materials().iter().map(|m| m.name.as_str()).collect();
     names.sort_unstable();
     let mut twice: Vec<&str> = names.windows(2).filter(|w| w[0] == w[1]).map(|w| w[0]).collect();
     twice.dedup();
@@ -101,12 +101,12 @@ fn materials(scene: &Scene, tell: Tell) {
         tell(Severity::Warning, "names", format!("{} material names occur twice: {}", twice.len(), some_of(&twice)));
     }
     let invisible = |m: &&Material| m.diffuse_texture.is_some() && m.diffuse.max_element() <= 0.0;
-    let black: Vec<&str> = scene.materials.iter().filter(invisible).map(|m| m.name.as_str()).collect();
+    let black: Vec<&str> = scene.materials().iter().filter(invisible).map(|m| m.name.as_str()).collect();
     if !black.is_empty() {
         let names = some_of(&black);
         tell(Severity::Warning, "materials", format!("Kd is 0 and blackens the texture of {names}; set Kd to 1 1 1"));
     }
-    if scene.view.lights.iter().all(|l| l.intensity.max_element() <= 0.0) {
+    if scene.view().lights.iter().all(|l| l.intensity.max_element() <= 0.0) {
         tell(Severity::Warning, "lights", "no light shines; only ambient light is seen".into());
     }
 }
@@ -114,8 +114,8 @@ fn materials(scene: &Scene, tell: Tell) {
 /// Needles and giants. (What has no area was left out while loading, with a warning.)
 fn triangles(scene: &Scene, tell: Tell) {
     let (mut needles, mut giants) = (0, Vec::new());
-    for (triangle, &object) in scene.triangles.iter().zip(&scene.triangle_objects) {
-        let [a, b, c] = triangle.map(|v| scene.positions[v as usize]);
+    for (triangle, &object) in scene.triangles().iter().zip(scene.triangle_objects()) {
+        let [a, b, c] = triangle.map(|v| scene.positions()[v as usize]);
         let (e, f, g) = (b - a, c - b, a - c);
         let longest2 = dot(e, e).max(dot(f, f)).max(dot(g, g));
         let n = cross(e, -g);
@@ -123,12 +123,12 @@ fn triangles(scene: &Scene, tell: Tell) {
         if longest2 > NEEDLE_RATIO * dot(n, n).sqrt() {
             needles += 1;
         }
-        if longest2.sqrt() > HUGE_EXTENTS * scene.view.extent {
+        if longest2.sqrt() > HUGE_EXTENTS * scene.view().extent {
             giants.push(object);
         }
     }
     if needles > 0 {
-        let share = percent(needles, scene.triangles.len());
+        let share = percent(needles, scene.triangles().len());
         let message = format!("{share} triangles are needles, more than {NEEDLE_RATIO} times as long as high");
         tell(Severity::Note, "triangles", message);
     }
@@ -137,8 +137,8 @@ fn triangles(scene: &Scene, tell: Tell) {
         giants.dedup();
         giants.sort_unstable();
         giants.dedup();
-        let names: Vec<&str> = giants.iter().map(|&o| scene.objects[o as usize].name.as_str()).collect();
-        let extent = scene.view.extent;
+        let names: Vec<&str> = giants.iter().map(|&o| scene.objects()[o as usize].name.as_str()).collect();
+        let extent = scene.view().extent;
         let message =
             format!("{count} triangles are longer than {HUGE_EXTENTS} extents ({extent} each), in {}", some_of(&names));
         tell(Severity::Note, "triangles", message);
@@ -146,13 +146,13 @@ fn triangles(scene: &Scene, tell: Tell) {
 }
 
 fn extent(scene: &Scene, tell: Tell) {
-    let extents = Extents::of(&scene.positions, &scene.triangles);
+    let extents = Extents::of(scene.positions(), scene.triangles());
     let longest = |(low, high): (glam::Vec3, glam::Vec3)| (high - low).max_element();
     let (all, most) = (longest(extents.all), longest(extents.most));
-    let given = scene.view.extent;
+    let given = scene.view().extent;
     if all > OUTLIER_RATIO * most {
         let object = outermost(scene, &extents);
-        let remedy = if scene.notes.extent_given {
+        let remedy = if scene.notes().extent_given {
             format!("view.json says {given}, which counts")
         } else {
             "set `extent` in view.json to the size of the room".into()
@@ -161,7 +161,7 @@ fn extent(scene: &Scene, tell: Tell) {
             "a few outliers dominate the extent: the box of all vertices is {all} long, that of the middle 98 % {most} \
              (farthest out: `{object}`); {remedy}"
         );
-        let severity = if scene.notes.extent_given { Severity::Note } else { Severity::Warning };
+        let severity = if scene.notes().extent_given { Severity::Note } else { Severity::Warning };
         tell(severity, "extent", message);
     }
     if given > 4.0 * all || given < 0.1 * most {
@@ -174,24 +174,24 @@ fn extent(scene: &Scene, tell: Tell) {
 fn outermost<'a>(scene: &'a Scene, extents: &Extents) -> &'a str {
     let middle = extents.most.0 + (extents.most.1 - extents.most.0) * 0.5;
     let mut farthest = (-1.0, 0);
-    for (triangle, &object) in scene.triangles.iter().zip(&scene.triangle_objects) {
+    for (triangle, &object) in scene.triangles().iter().zip(scene.triangle_objects()) {
         for &v in triangle {
-            let distance = (scene.positions[v as usize] - middle).abs().max_element();
+            let distance = (scene.positions()[v as usize] - middle).abs().max_element();
             if distance > farthest.0 {
                 farthest = (distance, object);
             }
         }
     }
-    &scene.objects[farthest.1 as usize].name
+    &scene.objects()[farthest.1 as usize].name
 }
 
 /// Neighbouring triangles that are wound in opposite senses: both run along their common edge in the same direction.
 fn winding(scene: &Scene, tell: Tell) {
     // Vertices at the same place are one: files split them where attributes differ.
-    let mut order: Vec<u32> = (0..scene.positions.len() as u32).collect();
-    let key = |v: u32| (scene.positions[v as usize] + glam::Vec3::ZERO).to_array().map(f32::to_bits);
+    let mut order: Vec<u32> = (0..scene.positions().len() as u32).collect();
+    let key = |v: u32| (scene.positions()[v as usize] + glam::Vec3::ZERO).to_array().map(f32::to_bits);
     order.sort_unstable_by_key(|&v| (key(v), v));
-    let mut place = vec![0u32; scene.positions.len()];
+    let mut place = vec![0u32; scene.positions().len()];
     let mut last = 0;
     for (i, &v) in order.iter().enumerate() {
         if i == 0 || key(order[i - 1]) != key(v) {
@@ -201,8 +201,8 @@ fn winding(scene: &Scene, tell: Tell) {
     }
     drop(order);
     // An edge as (lower vertex, higher vertex, object), and whether the triangle runs from higher to lower.
-    let mut edges: Vec<(u32, u32, u32, bool)> = Vec::with_capacity(scene.triangles.len() * 3);
-    for (triangle, &object) in scene.triangles.iter().zip(&scene.triangle_objects) {
+    let mut edges: Vec<(u32, u32, u32, bool)> = Vec::with_capacity(scene.triangles().len() * 3);
+    for (triangle, &object) in scene.triangles().iter().zip(scene.triangle_objects()) {
         let [a, b, c] = triangle.map(|v| place[v as usize]);
         for (from, to) in [(a, b), (b, c), (c, a)] {
             edges.push((from.min(to), from.max(to), object, from > to));
@@ -228,7 +228,7 @@ fn winding(scene: &Scene, tell: Tell) {
         objects.sort_unstable();
         objects.dedup();
         let share = percent(disagreeing, shared);
-        let names: Vec<&str> = objects.iter().map(|&o| scene.objects[o as usize].name.as_str()).collect();
+        let names: Vec<&str> = objects.iter().map(|&o| scene.objects()[o as usize].name.as_str()).collect();
         let message = format!(
             "winding is mixed: at {share} edges the two faces run in opposite senses, in {}; drawn two-sided, but glass \
              needs to know inside from outside",
@@ -238,7 +238,7 @@ fn winding(scene: &Scene, tell: Tell) {
     }
     let against = wound_against_normals(scene);
     if against > 0 {
-        let share = percent(against, scene.triangles.len());
+        let share = percent(against, scene.triangles().len());
         let message = format!("{share} triangles are wound against their shading normals; drawn two-sided");
         tell(Severity::Note, "winding", message);
     }
@@ -251,24 +251,25 @@ fn winding(scene: &Scene, tell: Tell) {
 /// Triangles all of whose corners have a shading normal on the other side than the winding says.
 fn wound_against_normals(scene: &Scene) -> usize {
     let against = |(triangle, normals): (&[u32; 3], &[u32; 3])| {
-        let [a, b, c] = triangle.map(|v| scene.positions[v as usize]);
+        let [a, b, c] = triangle.map(|v| scene.positions()[v as usize]);
         let face = cross(b - a, c - a);
         normals.iter().all(|&n| dot(face, unpack_normal(n)) < 0.0)
     };
-    scene.triangles.iter().zip(&scene.corner_normals).filter(|&both| against(both)).count()
+    scene.triangles().iter().zip(scene.corner_normals()).filter(|&both| against(both)).count()
 }
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used)]
     use glam::{Vec2, Vec3};
 
-    use super::super::{Light, Object};
+    use super::super::{Light, Object, SceneParts, Texture};
     use super::*;
     use crate::math::pack_normal;
 
     /// A sheet of `n` by `n` unit squares in the xy plane, wound counter-clockwise, with a light: nothing is odd.
-    fn sheet(n: u32) -> Scene {
-        let mut scene = Scene { materials: vec![Material::default()], ..Scene::default() };
+    fn sheet(n: u32) -> SceneParts {
+        let mut scene = SceneParts { materials: vec![Material::default()], ..SceneParts::default() };
         for y in 0..=n {
             scene.positions.extend((0..=n).map(|x| Vec3::new(x as f32, y as f32, 0.0)));
         }
@@ -289,15 +290,15 @@ mod tests {
     }
 
     #[track_caller]
-    fn finds(scene: &Scene, severity: Severity, topic: &str, words: &str) {
-        let findings = examine(scene);
+    fn finds(parts: &SceneParts, severity: Severity, topic: &str, words: &str) {
+        let findings = examine(&Scene::new(parts.clone()).unwrap());
         let fits = |f: &Finding| f.severity == severity && f.topic == topic && f.message.contains(words);
         assert!(findings.iter().any(fits), "no {severity:?} about {topic} with `{words}`: {findings:#?}");
     }
 
     #[test]
     fn nothing_is_odd_about_a_plain_sheet() {
-        assert_eq!(examine(&sheet(20)), []);
+        assert_eq!(examine(&Scene::new(sheet(20)).unwrap()), []);
     }
 
     #[test]
@@ -355,12 +356,13 @@ mod tests {
         finds(&scene, Severity::Note, "normals", "4 of 8 (50.0 %)");
         finds(&scene, Severity::Warning, "texture coordinates", "3 triangles");
         finds(&scene, Severity::Note, "names", "`chair`");
-        assert_eq!(examine(&scene)[0].severity, Severity::Warning);
+        assert_eq!(examine(&Scene::new(scene).unwrap())[0].severity, Severity::Warning);
     }
 
     #[test]
     fn materials_and_lights_that_show_nothing_are_told() {
         let mut scene = sheet(2);
+        scene.textures.push(Texture { name: "t.png".into(), width: 1, height: 1, texels: vec![0] });
         scene.materials.push(Material { diffuse: Vec3::ZERO, diffuse_texture: Some(0), ..Material::default() });
         scene.view.lights.clear();
         finds(&scene, Severity::Warning, "materials", "blackens the texture of `(default)`");

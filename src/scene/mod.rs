@@ -1,15 +1,23 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! What is drawn: triangles, objects, materials, textures, and the view (camera, lights, environment).
 //!
-//! A [`Scene`] is plain data in scene units, valid by construction: every index is in range, every number is finite,
-//! and it has at least one triangle with an area. [`load()`] makes one from files; [`crate::scene::builtin`] from parameters.
+//! A [`Scene`] is valid by construction: every index is in range, every number is finite, and it has at least one
+//! triangle with an area. [`load()`] makes one from files, [`crate::scene::builtin`] from parameters, [`Scene::new`] from
+//! [`SceneParts`], plain data in scene units.
 
 pub mod builtin;
+mod check;
 pub mod doctor;
 mod import;
 
 use glam::{Vec2, Vec3};
 
+use crate::Result;
+
+pub use check::{
+    MAX_COORDINATE, MAX_INDEX_OF_REFRACTION, MAX_INTENSITY, MAX_RADIANCE, MAX_SHININESS, MAX_TEXCOORD,
+    MAX_TEXTURE_SIDE, MAX_TRIANGLES, MAX_VIEW_COORDINATE,
+};
 pub(crate) use import::complete_view;
 pub use import::load;
 
@@ -18,9 +26,123 @@ pub use crate::layout::NO_OBJECT;
 /// Most lights a scene may have: one bit each in a 32-bit word of shadow flags.
 pub const MAX_LIGHTS: usize = 32;
 
-/// Everything that is drawn, and how it is looked at.
-#[derive(Debug, Clone, Default)]
+/// Everything that is drawn, and how it is looked at. Valid: whoever reads it need not check an index or a number.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
+    parts: SceneParts,
+}
+
+impl Scene {
+    /// The scene made of these parts, once all of them are checked.
+    ///
+    /// ```
+    /// use glam::{Vec2, Vec3};
+    /// use rarefy::scene::{Material, Object, SceneParts};
+    ///
+    /// let mut parts = SceneParts {
+    ///     positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y],
+    ///     triangles: vec![[0, 1, 2]],
+    ///     corner_normals: vec![[rarefy::math::pack_normal(Vec3::Z); 3]],
+    ///     corner_texcoords: vec![[Vec2::ZERO; 3]],
+    ///     triangle_objects: vec![0],
+    ///     objects: vec![Object { name: "triangle".into(), material: 0 }],
+    ///     materials: vec![Material::default()],
+    ///     ..SceneParts::default()
+    /// };
+    /// assert!(rarefy::Scene::new(parts.clone()).is_ok());
+    /// parts.triangles[0][2] = 3;
+    /// let error = rarefy::Scene::new(parts).unwrap_err();
+    /// assert_eq!(error.to_string(), "triangles[0]: [0, 1, 3] names a vertex that is not one of the 3");
+    /// ```
+    ///
+    /// # Errors
+    /// [`crate::Error::InvalidScene`] with the first part that breaks a rule: lists that do not fit together, an index
+    /// out of range, a number that is not finite or beyond its limit (`MAX_...` of this module), texels that do not fill
+    /// their texture, more than [`MAX_LIGHTS`] lights, a camera without a direction, no triangle with an area.
+    pub fn new(parts: SceneParts) -> Result<Self> {
+        check::scene(&parts)?;
+        Ok(Scene { parts })
+    }
+
+    /// The parts, to be changed and made a scene again.
+    pub fn into_parts(self) -> SceneParts {
+        self.parts
+    }
+
+    /// Looks at the scene in another way.
+    ///
+    /// # Errors
+    /// As for [`View::validate`]; the view then stays.
+    pub fn set_view(&mut self, view: View) -> Result<()> {
+        view.validate()?;
+        self.parts.view = view;
+        Ok(())
+    }
+
+    /// Short name: the folder's or file's, or the built-in scene's.
+    pub fn name(&self) -> &str {
+        &self.parts.name
+    }
+
+    /// Vertex positions, in scene units.
+    pub fn positions(&self) -> &[Vec3] {
+        &self.parts.positions
+    }
+
+    /// Three indices into the positions for each triangle. Triangle ids everywhere are indices into this list.
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.parts.triangles
+    }
+
+    /// Shading normals at the three corners of each triangle, packed by [`crate::math::pack_normal`].
+    pub fn corner_normals(&self) -> &[[u32; 3]] {
+        &self.parts.corner_normals
+    }
+
+    /// Texture coordinates at the three corners of each triangle; not wrapped, `t` upwards.
+    pub fn corner_texcoords(&self) -> &[[Vec2; 3]] {
+        &self.parts.corner_texcoords
+    }
+
+    /// The object of each triangle.
+    pub fn triangle_objects(&self) -> &[u32] {
+        &self.parts.triangle_objects
+    }
+
+    /// Objects: what the similarity test G1 tells apart.
+    pub fn objects(&self) -> &[Object] {
+        &self.parts.objects
+    }
+
+    /// Materials that objects refer to.
+    pub fn materials(&self) -> &[Material] {
+        &self.parts.materials
+    }
+
+    /// Textures that materials refer to.
+    pub fn textures(&self) -> &[Texture] {
+        &self.parts.textures
+    }
+
+    /// Camera, lights and environment.
+    pub fn view(&self) -> &View {
+        &self.parts.view
+    }
+
+    /// Things that were mended or left out while loading, one sentence each, with their place.
+    pub fn warnings(&self) -> &[String] {
+        &self.parts.warnings
+    }
+
+    /// What loading counted; for [`doctor::examine`].
+    pub fn notes(&self) -> &LoadNotes {
+        &self.parts.notes
+    }
+}
+
+/// What a [`Scene`] is made of: plain lists, to be filled or changed by anyone and checked by [`Scene::new`].
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct SceneParts {
     /// Short name: the folder's or file's, or the built-in scene's.
     pub name: String,
     /// Vertex positions, in scene units.
@@ -36,7 +158,7 @@ pub struct Scene {
     pub triangle_objects: Vec<u32>,
     /// Objects: what the similarity test G1 tells apart.
     pub objects: Vec<Object>,
-    /// Materials; never empty (index 0 may be the default material).
+    /// Materials that objects refer to.
     pub materials: Vec<Material>,
     /// Textures that materials refer to.
     pub textures: Vec<Texture>,
@@ -70,7 +192,7 @@ pub struct LoadNotes {
 pub struct Object {
     /// Name of the OBJ object or group.
     pub name: String,
-    /// Index into [`Scene::materials`].
+    /// Index into [`SceneParts::materials`].
     pub material: u32,
 }
 
@@ -105,9 +227,9 @@ pub struct Material {
     pub index_of_refraction: f32,
     /// How rays are treated.
     pub surface: Surface,
-    /// `map_Kd`: index into [`Scene::textures`].
+    /// `map_Kd`: index into [`SceneParts::textures`].
     pub diffuse_texture: Option<u32>,
-    /// `map_d` of an alpha-masked material: texels below one half are holes. Index into [`Scene::textures`].
+    /// `map_d` of an alpha-masked material: texels below one half are holes. Index into [`SceneParts::textures`].
     pub cutout_texture: Option<u32>,
 }
 
@@ -142,7 +264,7 @@ pub struct Texture {
     pub texels: Vec<u32>,
 }
 
-/// How the scene is looked at: the contents of `view.json`, checked.
+/// How the scene is looked at: the contents of `view.json`. [`Scene::new`] and [`View::validate`] check it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct View {
     /// The camera.
@@ -155,6 +277,17 @@ pub struct View {
     pub background: Vec3,
     /// Size of the room in scene units: the length that `--t-pos` is relative to.
     pub extent: f32,
+}
+
+impl View {
+    /// Goes on if this view can be drawn.
+    ///
+    /// # Errors
+    /// [`crate::Error::InvalidScene`] with the field: a number that is not finite or beyond its limit, a camera without a
+    /// direction, more than [`MAX_LIGHTS`] lights.
+    pub fn validate(&self) -> Result<()> {
+        check::view(self)
+    }
 }
 
 impl Default for View {

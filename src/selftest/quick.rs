@@ -155,7 +155,8 @@ fn test(device: &mut OpenClBackend) -> Result<SelfTest> {
 }
 
 pub(crate) fn scene_buffers(scene: &Scene, shading: Shading) -> Result<Arc<SceneBuffers>> {
-    let tree = KdTree::build(&scene.positions, &scene.triangles, &BuildOptions::default(), &crate::Monitor::default())?;
+    let tree =
+        KdTree::build(scene.positions(), scene.triangles(), &BuildOptions::default(), &crate::Monitor::default())?;
     Ok(Arc::new(SceneBuffers::new(scene, tree, shading)?))
 }
 
@@ -166,11 +167,11 @@ pub(crate) fn run_frame(
     options: &RenderOptions,
     counters: bool,
 ) -> Result<()> {
-    let params = frame_params(&scene.view, buffers, options.width, options.height, options.block, options.depth);
+    let params = frame_params(scene.view(), buffers, options.width, options.height, options.block, options.depth);
     let sizes = BufferSizes::new(&params, true, counters, backend.scan_group());
     let sizes = sizes.ok_or_else(|| Error::option("size", "a self-test frame does not fit the address space"))?;
     backend.begin(&params, &sizes)?;
-    pipeline::adaptive_frame(backend, &params, options, scene.view.extent)?;
+    pipeline::adaptive_frame(backend, &params, options, scene.view().extent)?;
     Ok(())
 }
 

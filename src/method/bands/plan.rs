@@ -199,7 +199,7 @@ mod tests {
     fn no_size_of_any_frame_overflows() {
         let scene = builtin::to_scene("wall").unwrap();
         let tree =
-            KdTree::build(&scene.positions, &scene.triangles, &BuildOptions::default(), &crate::Monitor::default())
+            KdTree::build(scene.positions(), scene.triangles(), &BuildOptions::default(), &crate::Monitor::default())
                 .unwrap();
         let buffers = SceneBuffers::new(&scene, tree, Shading::Full).unwrap();
         let mut random = Random(2016);
@@ -212,7 +212,7 @@ mod tests {
             options.validate().unwrap();
             let (width, height) = options.sample_size();
             let block = [1, 2, 4][random.bits() as usize % 3];
-            let frame = frame_params(&scene.view, &buffers, width, height, block, 4);
+            let frame = frame_params(scene.view(), &buffers, width, height, block, 4);
             let limit = |random: &mut Random| [u64::MAX, u64::MAX, random.bits(), random.bits() >> 16][round % 4];
             let room = Room {
                 total_bytes: limit(&mut random),

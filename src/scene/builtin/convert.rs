@@ -7,14 +7,14 @@ use glam::Vec3;
 
 use super::model::Model;
 use crate::math::pack_normal;
-use crate::scene::{LoadNotes, Material, Object, Texture, complete_view};
+use crate::scene::{LoadNotes, Material, Object, SceneParts, Texture, complete_view};
 use crate::{Error, Result, Scene};
 
 /// Makes the scene that [`crate::scene::load`] would make from the model's files.
 pub fn scene_of(model: &Model) -> Result<Scene> {
     let (view, warnings) = complete_view(&format!("scenes/{}/view.json", model.name), model.view)?;
-    let mut scene = Scene { name: model.name.clone(), view, warnings, ..Scene::default() };
-    scene.notes = LoadNotes { extent_given: true, ..LoadNotes::default() };
+    let mut parts = SceneParts { name: model.name.clone(), view, warnings, ..SceneParts::default() };
+    parts.notes = LoadNotes { extent_given: true, ..LoadNotes::default() };
     let mut known = HashMap::new();
     for m in &model.materials {
         let mut texture = |name: &Option<String>, is_mask: bool| match name {
@@ -22,8 +22,8 @@ pub fn scene_of(model: &Model) -> Result<Scene> {
             Some(name) => match known.get(&(name.clone(), is_mask)) {
                 Some(&index) => Ok(Some(index)),
                 None => {
-                    let index = scene.textures.len() as u32;
-                    scene.textures.push(texture_of(model, name, is_mask)?);
+                    let index = parts.textures.len() as u32;
+                    parts.textures.push(texture_of(model, name, is_mask)?);
                     known.insert((name.clone(), is_mask), index);
                     Ok::<_, Error>(Some(index))
                 }
@@ -34,7 +34,7 @@ pub fn scene_of(model: &Model) -> Result<Scene> {
         // Only glasses have these in their files.
         let base = Material::default();
         let passes = matches!(m.surface, crate::scene::Surface::Glass | crate::scene::Surface::ThinGlass);
-        scene.materials.push(Material {
+        parts.materials.push(Material {
             name: m.name.clone(),
             diffuse: Vec3::from(m.diffuse),
             specular: Vec3::from(m.specular),
@@ -46,24 +46,24 @@ pub fn scene_of(model: &Model) -> Result<Scene> {
             cutout_texture,
         });
     }
-    scene.materials.push(Material::default());
+    parts.materials.push(Material::default());
     for group in &model.groups {
         let unknown = || Error::scene(model.name.clone(), format!("unknown material `{}`", group.material));
         let material = model.material_index(&group.material).ok_or_else(unknown)? as u32;
-        let object = scene.objects.len() as u32;
-        scene.objects.push(Object { name: group.name.clone(), material });
+        let object = parts.objects.len() as u32;
+        parts.objects.push(Object { name: group.name.clone(), material });
         let mesh = &group.mesh;
-        let first = scene.positions.len() as u32;
-        scene.positions.extend_from_slice(&mesh.positions);
+        let first = parts.positions.len() as u32;
+        parts.positions.extend_from_slice(&mesh.positions);
         let normals: Vec<u32> = mesh.normals.iter().map(|&n| pack_normal(n)).collect();
         for t in &mesh.triangles {
-            scene.triangles.push(t.map(|i| first + i));
-            scene.corner_normals.push(t.map(|i| normals[i as usize]));
-            scene.corner_texcoords.push(t.map(|i| mesh.texcoords[i as usize]));
-            scene.triangle_objects.push(object);
+            parts.triangles.push(t.map(|i| first + i));
+            parts.corner_normals.push(t.map(|i| normals[i as usize]));
+            parts.corner_texcoords.push(t.map(|i| mesh.texcoords[i as usize]));
+            parts.triangle_objects.push(object);
         }
     }
-    Ok(scene)
+    Scene::new(parts)
 }
 
 /// The texture that a picture becomes: a mask's opacity is its grey value.

@@ -7,11 +7,11 @@ use std::path::Path;
 use glam::{Vec2, Vec3};
 
 use super::locate;
-use super::obj::{MAX_COORDINATE, MISSING, ObjFile};
+use super::obj::{MISSING, ObjFile};
 use super::triangulate::{self, Split};
-use crate::math::{cross, dot, pack_normal};
+use crate::math::pack_normal;
 use crate::monitor::Monitor;
-use crate::scene::Object;
+use crate::scene::{MAX_COORDINATE, MAX_TRIANGLES, Object, check};
 use crate::{Error, Result};
 
 /// How the texture coordinates of a material are moved: `map_Kd` options `-s` and `-o`.
@@ -73,12 +73,12 @@ pub(super) fn assemble(path: &Path, file: ObjFile, materials: &FileMaterials, mo
     let mut geometry = Geometry::default();
     let total: usize = file.models.iter().map(triangles_of).sum();
     let vertices: usize = file.models.iter().map(|m| m.mesh.positions.len() / 3).sum();
-    if total.max(vertices) >= u32::MAX as usize / 4 {
+    if total.max(vertices) > MAX_TRIANGLES {
         return Err(Error::LimitExceeded {
             what: path.display().to_string(),
             limit: "triangles".into(),
             wanted: format!("{total} triangles, {vertices} vertices"),
-            allowed: format!("{}", u32::MAX / 4),
+            allowed: format!("{MAX_TRIANGLES}"),
             remedy: "split the scene".into(),
         });
     }
@@ -255,10 +255,7 @@ fn add_faces(g: &mut Geometry, faces: &mut Faces, shape: &Shape, monitor: &Monit
 fn add_triangle(g: &mut Geometry, shape: &Shape, at: [usize; 3]) {
     let &Shape { mesh, indices, object, map } = shape;
     let triangle = at.map(|c| indices[mesh.indices[c] as usize]);
-    let [a, b, c] = triangle.map(|v| g.positions[v as usize]);
-    let n = cross(b - a, c - a);
-    // Below the least normal float the intersection test could not divide by it.
-    if dot(n, n) < f32::MIN_POSITIVE {
+    if !check::has_area(triangle.map(|v| g.positions[v as usize])) {
         g.dropped += 1;
         return;
     }

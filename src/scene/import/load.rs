@@ -14,7 +14,7 @@ use super::obj::{self, ObjFile};
 use super::texture::{Role, Textures};
 use super::view::{self, ViewFile};
 use crate::monitor::Monitor;
-use crate::scene::{LoadNotes, Material, Scene, Surface, View};
+use crate::scene::{LoadNotes, Material, Scene, SceneParts, Surface, View};
 use crate::{Error, Result};
 
 /// Loads the scene at `path`: a folder with `scene.obj` (and `view.json`), or an OBJ file (`view.json` beside it is
@@ -72,7 +72,7 @@ pub fn load(path: &Path, monitor: &Monitor) -> Result<Scene> {
     let view = make_view(&mut view_file, &geometry, &place, &mut warnings);
     monitor.check()?;
     part.tell(1.0);
-    Ok(Scene {
+    Scene::new(SceneParts {
         name,
         positions: geometry.positions,
         triangles: geometry.triangles,

@@ -4,8 +4,8 @@
 use std::path::Path;
 
 use super::lines::{LogicalLines, keyword, without_comment, words};
-use super::obj::MAX_COORDINATE;
 use crate::Error;
+use crate::scene::MAX_COORDINATE;
 
 /// The first line of `v`, `vt` or `vn` whose numbers are not numbers, not finite or too large.
 ///

@@ -24,9 +24,6 @@ use crate::{Error, Result};
 /// What stands for "the file has none" in the lists of texture coordinates and normals.
 pub(super) const MISSING: f32 = f32::MAX;
 
-/// Largest coordinate that is accepted: squares of areas of such triangles are still finite in single precision.
-pub(super) const MAX_COORDINATE: f32 = 1.0e9;
-
 /// Bytes that the feed keeps ready: few, since they are copied.
 const READY_BYTES: usize = 32 << 10;
 

@@ -9,11 +9,8 @@ use image::{ImageFormat, ImageReader, Limits};
 
 use crate::files::{self, InputFile};
 use crate::monitor::Monitor;
-use crate::scene::Texture;
+use crate::scene::{MAX_TEXTURE_SIDE, Texture};
 use crate::{Error, Result};
-
-/// Most texels along a side.
-pub(super) const MAX_SIDE: u32 = 16384;
 
 /// Most bytes of texels in a scene.
 pub(super) const MAX_TOTAL_BYTES: u64 = 256 << 20;
@@ -162,8 +159,8 @@ impl Textures {
                 remedy: "scale the picture down".into(),
             })
         };
-        if width > MAX_SIDE || height > MAX_SIDE {
-            return over("texture side", format!("{width}x{height} texels"), format!("{MAX_SIDE} texels"));
+        if width > MAX_TEXTURE_SIDE || height > MAX_TEXTURE_SIDE {
+            return over("texture side", format!("{width}x{height} texels"), format!("{MAX_TEXTURE_SIDE} texels"));
         }
         let bytes = u64::from(width) * u64::from(height) * 4;
         let total = self.total_bytes + bytes;

@@ -28,15 +28,11 @@ use glam::Vec3;
 use serde_json::{Map, Value};
 
 use super::lines::read_text;
-use super::obj::MAX_COORDINATE;
-use crate::scene::{Camera, Light, MAX_LIGHTS, View};
+use crate::scene::{Camera, Light, MAX_INTENSITY, MAX_LIGHTS, MAX_RADIANCE, MAX_VIEW_COORDINATE, View, check};
 use crate::{Error, Result};
 
 /// Largest file that is read: far above any view, far below what would fill the memory.
 const MAX_BYTES: u64 = 16 << 20;
-
-/// Brightest light or colour: products of a few of these are still finite.
-const MAX_INTENSITY: f32 = 1.0e9;
 
 /// Keys that are for people.
 const FOR_PEOPLE: [&str; 10] =
@@ -82,13 +78,11 @@ pub(super) fn parse(path: &Path, text: &str) -> Result<ViewFile> {
         match key.as_str() {
             "camera" => view.camera = camera(&at, value, &mut view.warnings)?,
             "lights" => view.lights = Some(lights(&at, value, &mut view.warnings)?),
-            "suggested_ambient" => view.ambient = Some(colour(&at, value)?),
-            "background" => view.background = Some(colour(&at, value)?),
+            "suggested_ambient" => view.ambient = Some(colour(&at, value, MAX_RADIANCE)?),
+            "background" => view.background = Some(colour(&at, value, MAX_RADIANCE)?),
             "extent" => {
                 let extent = number(&at, value)?;
-                if !(f32::MIN_POSITIVE..=MAX_COORDINATE).contains(&extent) {
-                    return Err(at.error(format!("{extent} is out of range (above 0, at most {MAX_COORDINATE:e})")));
-                }
+                check::extent(extent).map_err(|message| at.error(message))?;
                 view.extent = Some(extent);
             }
             "triangles" => match value.as_u64() {
@@ -191,12 +185,10 @@ fn three(at: &At, value: &Value, limit: f32) -> Result<Vec3> {
     Ok(Vec3::from(v))
 }
 
-/// RGB or grey, not negative.
-fn colour(at: &At, value: &Value) -> Result<Vec3> {
-    let rgb = if value.is_number() { Vec3::splat(number(at, value)?) } else { three(at, value, MAX_INTENSITY)? };
-    if rgb.min_element() < 0.0 || rgb.max_element() > MAX_INTENSITY {
-        return Err(at.error(format!("{rgb} is out of range (0 to {MAX_INTENSITY:e})")));
-    }
+/// RGB or grey, not negative, at most `limit`.
+fn colour(at: &At, value: &Value, limit: f32) -> Result<Vec3> {
+    let rgb = if value.is_number() { Vec3::splat(number(at, value)?) } else { three(at, value, limit)? };
+    check::radiance(rgb, limit).map_err(|message| at.error(message))?;
     Ok(rgb)
 }
 
@@ -219,14 +211,12 @@ fn camera(at: &At, value: &Value, warnings: &mut Vec<String>) -> Result<Option<C
     for (key, value) in members {
         let at = at.member(key);
         match key.as_str() {
-            "eye" => eye = Some(three(&at, value, MAX_COORDINATE)?),
-            "look_at" => look_at = Some(three(&at, value, MAX_COORDINATE)?),
-            "up" => camera.up = three(&at, value, MAX_COORDINATE)?,
+            "eye" => eye = Some(three(&at, value, MAX_VIEW_COORDINATE)?),
+            "look_at" => look_at = Some(three(&at, value, MAX_VIEW_COORDINATE)?),
+            "up" => camera.up = three(&at, value, MAX_VIEW_COORDINATE)?,
             "fov_y_degrees" => {
                 let degrees = number(&at, value)?;
-                if !(degrees > 0.0 && degrees < 180.0) {
-                    return Err(at.error(format!("{degrees} is out of range (above 0 and below 180 degrees)")));
-                }
+                check::field_of_view(degrees).map_err(|message| at.error(message))?;
                 camera.fov_y_degrees = degrees;
             }
             _ => warnings.push(at.unknown()),
@@ -240,26 +230,8 @@ fn camera(at: &At, value: &Value, warnings: &mut Vec<String>) -> Result<Option<C
         return Err(at.member(absent).error("is missing; a camera needs both `eye` and `look_at`"));
     };
     (camera.eye, camera.look_at) = (eye, look_at);
-    check_camera(&camera).map_err(|(key, message)| at.member(key).error(message))?;
+    check::camera(&camera).map_err(|(key, message)| at.member(key).error(message))?;
     Ok(Some(camera))
-}
-
-/// Checks that the camera's axes exist, in single precision as kernels compute them. On failure: the key, and why.
-fn check_camera(camera: &Camera) -> std::result::Result<(), (&'static str, String)> {
-    let direction = camera.look_at - camera.eye;
-    let scale = direction.abs().max_element();
-    if direction.length_squared() < f32::MIN_POSITIVE {
-        return Err(("look_at", format!("is the same point as `eye` {}: no direction to look in", camera.eye)));
-    }
-    let up_scale = camera.up.abs().max_element();
-    if camera.up.length_squared() < f32::MIN_POSITIVE {
-        return Err(("up", format!("{} has no length", camera.up)));
-    }
-    let sine = (direction / scale).normalize().cross((camera.up / up_scale).normalize()).length();
-    if sine < 1.0e-4 {
-        return Err(("up", format!("{} is parallel to the line of sight {direction}", camera.up)));
-    }
-    Ok(())
 }
 
 fn lights(at: &At, value: &Value, warnings: &mut Vec<String>) -> Result<Vec<Light>> {
@@ -275,8 +247,8 @@ fn lights(at: &At, value: &Value, warnings: &mut Vec<String>) -> Result<Vec<Ligh
         for (key, value) in object(&at, value)? {
             let at = at.member(key);
             match key.as_str() {
-                "position" => position = Some(three(&at, value, MAX_COORDINATE)?),
-                "intensity" => intensity = colour(&at, value)?,
+                "position" => position = Some(three(&at, value, MAX_VIEW_COORDINATE)?),
+                "intensity" => intensity = colour(&at, value, MAX_INTENSITY)?,
                 _ => warnings.push(at.unknown()),
             }
         }
