@@ -3,6 +3,8 @@
 
 use std::path::PathBuf;
 
+pub use crate::settings::Setting;
+
 /// The result of everything in this library that can fail.
 pub type Result<T> = std::result::Result<T, Error>;
 
@@ -44,12 +46,36 @@ pub enum Error {
         /// What is wrong with it.
         message: String,
     },
-    /// An option's value is out of its range.
-    #[error("{option}: {message}")]
+    /// A setting's value is not one that it may have.
+    #[error("{setting}: `{value}` is not allowed; it may be {allowed}")]
     InvalidOption {
-        /// The option as the user wrote it, such as `--size`.
-        option: String,
-        /// The value, the range and the remedy.
+        /// The setting.
+        setting: Setting,
+        /// The value that was given.
+        value: String,
+        /// The values that are allowed: a range, or a list of names.
+        allowed: String,
+    },
+    /// Arguments of a call do not fit each other, or what they are for.
+    #[error("{what}: {message}")]
+    InvalidArgument {
+        /// The argument.
+        what: String,
+        /// What does not fit, and what would.
+        message: String,
+    },
+    /// A plane was asked for that the last frame did not keep.
+    #[error("the last frame kept no plane of {plane}; name it in the frame's `Keep`")]
+    MissingPlane {
+        /// What the plane holds.
+        plane: &'static str,
+    },
+    /// A device profile has a key or a value that no profile may have.
+    #[error("{place}: {message}")]
+    InvalidProfile {
+        /// The file or the profile's name, and the key.
+        place: String,
+        /// What is wrong and what would be right.
         message: String,
     },
     /// Something needs more memory or larger sizes than a limit allows.
@@ -141,8 +167,18 @@ impl Error {
         Error::InvalidScene { place: place.into(), message: message.into() }
     }
 
-    /// An [`Error::InvalidOption`] for `option`.
-    pub fn option(option: impl Into<String>, message: impl Into<String>) -> Self {
-        Error::InvalidOption { option: option.into(), message: message.into() }
+    /// An [`Error::InvalidOption`]: `value` is none of the `allowed` ones.
+    pub fn option(setting: Setting, value: impl ToString, allowed: impl Into<String>) -> Self {
+        Error::InvalidOption { setting, value: value.to_string(), allowed: allowed.into() }
+    }
+
+    /// An [`Error::InvalidArgument`].
+    pub fn argument(what: impl Into<String>, message: impl Into<String>) -> Self {
+        Error::InvalidArgument { what: what.into(), message: message.into() }
+    }
+
+    /// An [`Error::InvalidProfile`] at `place`.
+    pub fn profile(place: impl Into<String>, message: impl ToString) -> Self {
+        Error::InvalidProfile { place: place.into(), message: message.to_string() }
     }
 }

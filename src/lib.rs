@@ -29,10 +29,12 @@ pub mod layout;
 pub mod math;
 pub mod method;
 pub mod monitor;
+mod names;
 pub mod prepare;
 pub mod render;
 pub mod scene;
 pub mod selftest;
+mod settings;
 
 pub use error::{Error, Result};
 pub use monitor::{Cancel, Monitor};

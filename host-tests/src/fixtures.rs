@@ -13,7 +13,9 @@ use rarefy::device::twin::traverse::closest_hit;
 use rarefy::layout::{FrameParams, NO_TRIANGLE};
 use rarefy::math::pack_normal;
 use rarefy::method::camera::frame_params;
-use rarefy::method::options::{Correction, Mode, RenderOptions, Tolerances};
+use rarefy::method::options::{
+    Checks, Compared, Correction, Method, Mode, RenderOptions, Spread, TextureRule, Tolerances,
+};
 use rarefy::prepare::kdtree::{BuildOptions, KdTree};
 use rarefy::prepare::scene_buffers::{SceneBuffers, Shading};
 use rarefy::render::renderer::{DeviceChoice, Keep, Renderer, RendererOptions};
@@ -262,21 +264,41 @@ pub fn twin_renderer(scene: Scene) -> Renderer {
 
 /// The given mode and size with the paper's tolerances at all levels and without correction.
 pub fn options(mode: Mode, width: u32, height: u32, block: u32) -> RenderOptions {
-    RenderOptions {
-        width,
-        height,
-        mode,
-        block,
-        correction: Correction::Off,
-        tolerances: Tolerances::PAPER,
-        coarse_tolerances: Tolerances::PAPER,
-        other_pairs: false,
-        unwrap_textures: false,
-        lenient_tests: 0,
-        t_visible: 0,
-        correction_t_visible: 0,
-        ..RenderOptions::default()
-    }
+    let method = Method::default();
+    let checks = Checks { second_pairs: false, textures: TextureRule::Border, t_shadow: 0, ..method.checks };
+    let checks = checks.at_all_levels(Tolerances::PAPER);
+    let method = Method { block, checks, correction: Correction::Off, ..method };
+    RenderOptions { width, height, mode, method, ..RenderOptions::default() }
+}
+
+/// The options with a changed method.
+pub fn with(options: &RenderOptions, change: impl FnOnce(&mut Method)) -> RenderOptions {
+    let mut changed = options.clone();
+    change(&mut changed.method);
+    changed
+}
+
+/// The default method in blocks of this side.
+pub fn blocks(block: u32) -> Method {
+    Method { block, ..Method::default() }
+}
+
+/// The default method, corrected in a single round of sweeps.
+pub fn sweeps() -> Method {
+    let method = Method::default();
+    Method { correction: method.correction.spreading(Spread::Sweeps), ..method }
+}
+
+/// Off, and every comparison in every spread.
+pub fn corrections() -> Vec<Correction> {
+    let compared = [Compared::Object, Compared::PAPER, Compared::VISIBLE];
+    let spread = |compared| [Correction::converged(compared), Correction::Sweeps(compared)];
+    std::iter::once(Correction::Off).chain(compared.into_iter().flat_map(spread)).collect()
+}
+
+/// Converged correction by the paper's rule alone: no neighbour is spared, no gap looked across.
+pub fn plainly_converged(compared: Compared) -> Correction {
+    Correction::Converged { compared, thin_only: false, bridges: false }
 }
 
 /// Draws a frame without the fall-back and keeps its attributes. Returns picture and statistics.

@@ -89,7 +89,7 @@ impl Prepared {
     pub fn draw(&self, backend: &mut dyn Backend, options: &RenderOptions, counters: bool) -> rarefy::Result<Drawn> {
         options.validate()?;
         let full = options.mode == Mode::Full;
-        let block = if full { 1 } else { options.block };
+        let block = if full { 1 } else { options.method.block };
         let (width, height) = (options.width, options.height);
         let frame = frame_params(self.scene.view(), &self.buffers, width, height, block, options.depth);
         if options.band_rows.is_some() {

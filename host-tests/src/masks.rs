@@ -4,10 +4,10 @@
 
 use glam::DVec3;
 use rarefy::layout::{CLASS_BASE, CLASS_INTERPOLATED, CLASS_MASK, CLASS_TRACED, FAIL_ALL, PLANE_CLASS};
-use rarefy::method::options::{Mode, RenderOptions, Tolerances};
+use rarefy::method::options::{Mode, RenderOptions, Test, Tolerances};
 use rarefy::scene::Scene;
 
-use crate::fixtures::{SceneBuilder, draw, options, twin_renderer};
+use crate::fixtures::{SceneBuilder, draw, options, twin_renderer, with};
 
 /// Width of the pictures.
 pub const W: u32 = 64;
@@ -91,7 +91,15 @@ pub fn tolerances(t_pos: f32) -> Tolerances {
 
 /// An adaptive frame with the same tolerances at all levels, without correction.
 pub fn adaptive(block: u32, tolerances: Tolerances) -> RenderOptions {
-    RenderOptions { tolerances, coarse_tolerances: tolerances, ..options(Mode::Adaptive, W, H, block) }
+    with(&options(Mode::Adaptive, W, H, block), |method| method.checks = method.checks.at_all_levels(tolerances))
+}
+
+/// The options without the test of this bit.
+pub fn without(options: &RenderOptions, fail_bit: u32) -> RenderOptions {
+    with(options, |method| {
+        let test = Test::ALL.into_iter().find(|test| test.fail_bit() == fail_bit).expect("a test's bit");
+        method.checks.tests = method.checks.tests.without(test);
+    })
 }
 
 /// Draws `scene` and lists the pixels whose class and failed tests are not what `mask` says of their references.
@@ -103,7 +111,7 @@ pub fn mismatches(scene: &Scene, options: &RenderOptions, mask: &dyn Fn((u32, u3
     let mut wrong = Vec::new();
     for (i, &word) in classes.iter().enumerate() {
         let pixel = (i as u32 % size.0, i as u32 / size.0);
-        let expected = match role(pixel, size, options.block) {
+        let expected = match role(pixel, size, options.method.block) {
             Role::Base => CLASS_BASE,
             Role::Border => CLASS_TRACED,
             Role::Between([a, b]) => match mask(a, b) {

@@ -6,7 +6,7 @@ use glam::{DVec3, Vec3};
 use rarefy::Error;
 use rarefy::layout::*;
 use rarefy::method::frame::Frame;
-use rarefy::method::options::{Correction, CorrectionMethod, Mode, RenderOptions};
+use rarefy::method::options::{Compared, Correction, Mode, RenderOptions};
 use rarefy::render::renderer::{DeviceChoice, Keep, Renderer, RendererOptions};
 use rarefy::scene::Scene;
 use rarefy::scene::builtin;
@@ -58,7 +58,8 @@ fn five_band_heights_draw_one_picture_on_both_back_ends() {
     for device in devices() {
         let mut renderer = renderer(builtin::to_scene("rods").unwrap(), device);
         for (block, samples) in [(2, 1), (4, 1), (2, 2)] {
-            let options = RenderOptions { width: 101, height: 75, block, samples, ..RenderOptions::default() };
+            let options =
+                RenderOptions { width: 101, height: 75, method: blocks(block), samples, ..RenderOptions::default() };
             assert_same_in_bands(&mut renderer, &options, &[2, 6, 8, 20, 64]);
         }
         let full = RenderOptions { width: 61, height: 47, samples: 2, mode: Mode::Full, ..RenderOptions::default() };
@@ -71,11 +72,17 @@ fn dashes_are_found_across_gaps_in_bands_of_any_height() {
     for device in devices() {
         let mut renderer = renderer(dashes(&[(4.3, 6.0), (52.3, -9.0)]), device);
         let options = RenderOptions { width: 64, height: 64, ..RenderOptions::default() };
-        let (with, _) = draw(&mut renderer, &options);
-        let (without, _) = draw(&mut renderer, &RenderOptions { correction_bridges: false, ..options.clone() });
-        assert!(with.pixels != without.pixels, "there are no gaps to look across");
+        let (joined, _) = draw(&mut renderer, &options);
+        let (without, _) = draw(
+            &mut renderer,
+            &with(&options, |method| {
+                let compared = Compared::VISIBLE;
+                method.correction = Correction::Converged { compared, thin_only: true, bridges: false };
+            }),
+        );
+        assert!(joined.pixels != without.pixels, "there are no gaps to look across");
         assert_same_in_bands(&mut renderer, &options, &[2, 4, 6, 10, 32]);
-        assert_same_in_bands(&mut renderer, &RenderOptions { block: 4, ..options }, &[4, 8, 12, 20, 32]);
+        assert_same_in_bands(&mut renderer, &RenderOptions { method: blocks(4), ..options }, &[4, 8, 12, 20, 32]);
     }
 }
 
@@ -102,7 +109,7 @@ fn a_thin_wire_is_followed_through_every_band() {
     let options = RenderOptions { width: 96, height: 96, ..RenderOptions::default() };
     for device in devices() {
         let mut renderer = renderer(wire_scene(), device);
-        let without = RenderOptions { correction: Correction::Off, ..options.clone() };
+        let without = with(&options, |method| method.correction = Correction::Off);
         let (full, _) = draw(&mut renderer, &RenderOptions { mode: Mode::Full, ..options.clone() });
         let (blind, _) = draw(&mut renderer, &without);
         let (whole, classes) = draw(&mut renderer, &options);
@@ -116,7 +123,11 @@ fn a_thin_wire_is_followed_through_every_band() {
         };
         assert!((30..80).step_by(2).all(|y| corrected(y..y + 2)), "the wire crosses every band");
         assert_same_in_bands(&mut renderer, &options, &[2, 4, 8, 16, 48]);
-        assert_same_in_bands(&mut renderer, &RenderOptions { block: 4, ..options.clone() }, &[4, 12, 16, 32, 48]);
+        assert_same_in_bands(
+            &mut renderer,
+            &RenderOptions { method: blocks(4), ..options.clone() },
+            &[4, 12, 16, 32, 48],
+        );
     }
 }
 
@@ -146,13 +157,8 @@ fn a_budget_cuts_the_frame_and_is_kept() {
 #[test]
 fn sweeps_need_the_whole_frame() {
     let mut renderer = renderer(builtin::to_scene("spheres").unwrap(), DeviceChoice::Cpu);
-    let options = RenderOptions {
-        width: 64,
-        height: 64,
-        correction_method: CorrectionMethod::Sweeps,
-        band_rows: Some(16),
-        ..RenderOptions::default()
-    };
+    let options =
+        RenderOptions { width: 64, height: 64, method: sweeps(), band_rows: Some(16), ..RenderOptions::default() };
     let error = renderer.render_exactly(&options, Keep::default()).unwrap_err().to_string();
     assert!(error.contains("sweeps") && error.contains("converged"), "{error}");
     // The renderer stays usable.
@@ -164,7 +170,7 @@ fn any_size_from_one_pixel_on() {
     let mut renderer = renderer(builtin::to_scene("spheres").unwrap(), DeviceChoice::Cpu);
     for (width, height) in [(1, 1), (1, 9), (9, 1), (2, 3), (5, 300), (400, 3)] {
         for (samples, block) in [(1, 2), (1, 4), (2, 2), (4, 4)] {
-            let options = RenderOptions { width, height, samples, block, ..RenderOptions::default() };
+            let options = RenderOptions { width, height, samples, method: blocks(block), ..RenderOptions::default() };
             assert_same_in_bands(&mut renderer, &options, &[1, 4, 37]);
         }
     }
@@ -178,7 +184,8 @@ fn extreme_sizes_are_the_same_on_both_back_ends_and_in_bands() {
         for (samples, block, mode) in
             [(1, 2, Mode::Adaptive), (1, 4, Mode::Adaptive), (2, 2, Mode::Adaptive), (1, 2, Mode::Full)]
         {
-            let options = RenderOptions { width, height, samples, block, mode, ..RenderOptions::default() };
+            let options =
+                RenderOptions { width, height, samples, method: blocks(block), mode, ..RenderOptions::default() };
             let mut drawn = Vec::new();
             for renderer in &mut renderers {
                 let (whole, classes) = draw(renderer, &options);
@@ -205,7 +212,7 @@ fn real_scenes_are_the_same_in_bands() {
             let mut renderer = renderer(scene, device);
             let options = RenderOptions { width: 400, height: 301, ..RenderOptions::default() };
             assert_same_in_bands(&mut renderer, &options, &[2, 10, 32, 76, 200]);
-            assert_same_in_bands(&mut renderer, &RenderOptions { block: 4, ..options.clone() }, &[4, 40, 150]);
+            assert_same_in_bands(&mut renderer, &RenderOptions { method: blocks(4), ..options.clone() }, &[4, 40, 150]);
         }
     }
 }

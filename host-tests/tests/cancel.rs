@@ -16,6 +16,7 @@ use rarefy::render::renderer::{DeviceChoice, Keep, Renderer, RendererOptions};
 use rarefy::scene::{self, builtin};
 use rarefy::{Error, Scene};
 use rarefy_host_tests::command::root;
+use rarefy_host_tests::fixtures::{blocks, sweeps};
 use rarefy_host_tests::frames::no_opencl;
 
 fn devices() -> Vec<DeviceChoice> {
@@ -133,7 +134,7 @@ fn other_errors_leave_the_frame_before_as_well() {
     renderer.render_exactly(&small(30, 20), Keep::planes(&[PLANE_OBJECT])).unwrap();
     let objects = renderer.plane(PLANE_OBJECT).unwrap();
     let wrong = RenderOptions { band_rows: Some(2), ..small(30, 20) };
-    let sweeps = RenderOptions { correction_method: rarefy::method::options::CorrectionMethod::Sweeps, ..wrong };
+    let sweeps = RenderOptions { method: sweeps(), ..wrong };
     assert!(renderer.render_exactly(&sweeps, Keep::default()).is_err());
     assert_eq!(renderer.plane(PLANE_OBJECT).unwrap(), objects);
     // A finished frame replaces it.
@@ -155,7 +156,7 @@ fn progress_runs_from_zero_to_one_and_never_back() {
                     log.lock().unwrap().push((phase.to_owned(), share));
                 }
             }));
-            let options = RenderOptions { band_rows, block, mode, ..small(97, 61) };
+            let options = RenderOptions { band_rows, method: blocks(block), mode, ..small(97, 61) };
             for _ in 0..2 {
                 heard.lock().unwrap().clear();
                 renderer.render_exactly(&options, Keep::COUNTERS).unwrap();
@@ -198,7 +199,7 @@ fn a_preview_is_the_base_pixels_of_the_picture() {
         let mut renderer = renderer(builtin::to_scene("rods").unwrap(), device);
         for (width, height) in [(97u32, 61u32), (1, 1), (5, 3), (64, 1)] {
             for (block, band_rows, least) in [(2, None, 1), (4, None, 1), (2, Some(10), height.div_ceil(16))] {
-                let options = RenderOptions { block, band_rows, ..small(width, height) };
+                let options = RenderOptions { method: blocks(block), band_rows, ..small(width, height) };
                 let (frame, preview_width, preview_height, pixels, count) = with_preview(&mut renderer, &options);
                 assert_eq!((preview_width, preview_height), (width.div_ceil(block), height.div_ceil(block)));
                 for (at, &pixel) in pixels.iter().enumerate() {

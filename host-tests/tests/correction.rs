@@ -7,7 +7,7 @@
 use rarefy::device::backend::{Backend, FrameBuffer};
 use rarefy::device::stage::Kernel;
 use rarefy::layout::*;
-use rarefy::method::options::{Correction, CorrectionMethod, Mode, RenderOptions};
+use rarefy::method::options::{Compared, Correction, Mode, RenderOptions, Spread};
 use rarefy::render::renderer::Renderer;
 use rarefy::scene::Scene;
 use rarefy::scene::builtin;
@@ -121,6 +121,17 @@ struct Rules {
     bridges: bool,
 }
 
+impl Rules {
+    /// The options with correction by these rules.
+    fn of(self, options: &RenderOptions) -> RenderOptions {
+        let Rules { thin_only, bridges } = self;
+        with(options, |method| {
+            let compared = method.correction.compared().expect("a correction");
+            method.correction = Correction::Converged { compared, thin_only, bridges };
+        })
+    }
+}
+
 /// What the traced pixels saw before any correction decides which of them pass a neighbour by, and where gaps are.
 fn fixed_point(
     before: &Planes,
@@ -153,17 +164,12 @@ fn fixed_point(
     now
 }
 
-fn adaptive(width: u32, height: u32, block: u32, correction: Correction, method: CorrectionMethod) -> RenderOptions {
-    let options = options(Mode::Adaptive, width, height, block);
-    // The paper's rule; what goes beyond it: see below.
-    RenderOptions {
-        correction,
-        correction_method: method,
-        correction_thin_only: false,
-        correction_bridges: false,
-        reuse_shadows: false,
-        ..options
-    }
+/// Correction by the paper's rule; what goes beyond it is switched on by [`Rules::of`].
+fn adaptive(width: u32, height: u32, block: u32, correction: Correction) -> RenderOptions {
+    with(&options(Mode::Adaptive, width, height, block), |method| {
+        method.correction = correction;
+        method.reuse_shadows = false;
+    })
 }
 
 fn full(renderer: &mut Renderer, width: u32, height: u32) -> Planes {
@@ -199,16 +205,16 @@ fn scenes() -> Vec<Scene> {
 }
 
 const SIZES: [(u32, u32); 6] = [(1, 1), (7, 1), (1, 7), (33, 17), (64, 64), (129, 95)];
-const SHADOWS: [(Correction, bool); 2] = [(Correction::Object, false), (Correction::ObjectAndShadow, true)];
+const SHADOWS: [(Compared, bool); 2] = [(Compared::Object, false), (Compared::PAPER, true)];
 
 /// Draws every scene in every size with both sizes of blocks and both corrections.
 fn for_all(mut check: impl FnMut(&mut Renderer, RenderOptions, bool, &str)) {
     for scene in scenes() {
         let mut renderer = twin_renderer(scene);
         for (width, height) in SIZES {
-            for (block, (correction, shadows)) in [2, 4].into_iter().flat_map(|b| SHADOWS.map(|s| (b, s))) {
-                let options = adaptive(width, height, block, correction, CorrectionMethod::Converged);
-                let name = format!("{} {width}x{height}, blocks of {block}, {correction:?}", renderer.name());
+            for (block, (compared, shadows)) in [2, 4].into_iter().flat_map(|b| SHADOWS.map(|s| (b, s))) {
+                let options = adaptive(width, height, block, plainly_converged(compared));
+                let name = format!("{} {width}x{height}, blocks of {block}, {compared}", renderer.name());
                 check(&mut renderer, options, shadows, &name);
             }
         }
@@ -216,7 +222,7 @@ fn for_all(mut check: impl FnMut(&mut Renderer, RenderOptions, bool, &str)) {
 }
 
 fn without_correction(renderer: &mut Renderer, options: &RenderOptions) -> Planes {
-    planes(renderer, &RenderOptions { correction: Correction::Off, ..options.clone() })
+    planes(renderer, &with(options, |method| method.correction = Correction::Off))
 }
 
 #[test]
@@ -245,11 +251,10 @@ fn correction_of_thin_things_is_the_same_in_any_order_and_spares_edges_of_thick_
     let mut random = Random::new(9);
     let (mut fired, mut of) = (0, 0);
     for_all(|renderer, options, shadows, name| {
-        let thin_only = RenderOptions { correction_thin_only: true, ..options.clone() };
         let full = full(renderer, options.width, options.height);
         let before = without_correction(renderer, &options);
-        let found = planes(renderer, &thin_only);
         let rules = Rules { thin_only: true, bridges: false };
+        let found = planes(renderer, &rules.of(&options));
         let expected = fixed_point(&before, &full, shadows, rules, &mut |n| n - 1);
         assert!(found == expected, "{name}: {:?} instead of {:?}", found.fired(), expected.fired());
         let at_random = fixed_point(&before, &full, shadows, rules, &mut |n| random.below(n));
@@ -272,13 +277,12 @@ fn correction_across_gaps_is_the_same_in_any_order_and_only_adds() {
         let before = without_correction(renderer, &options);
         for thin_only in [false, true] {
             let rules = Rules { thin_only, bridges: true };
-            let without = RenderOptions { correction_thin_only: thin_only, ..options.clone() };
-            let found = planes(renderer, &RenderOptions { correction_bridges: true, ..without.clone() });
+            let found = planes(renderer, &rules.of(&options));
             let expected = fixed_point(&before, &full, shadows, rules, &mut |n| n - 1);
             assert!(found == expected, "{name}: {:?} instead of {:?}", found.fired(), expected.fired());
             let at_random = fixed_point(&before, &full, shadows, rules, &mut |n| random.below(n));
             assert!(at_random == expected, "{name}: at random");
-            let without = planes(renderer, &without);
+            let without = planes(renderer, &Rules { thin_only, bridges: false }.of(&options));
             assert!(without.fired().iter().all(|at| found.fired().contains(at)), "{name}: fired less across gaps");
             added += found.fired().len() - without.fired().len();
             right += without.wrong(&full, shadows).len() - found.wrong(&full, shadows).len();
@@ -293,11 +297,10 @@ fn dashes_of_odd_rows_are_found_across_the_gaps() {
     // Half a pixel high: in each row a dash of run / 2 pixels, the next row's begins run / 2 pixels behind it.
     for run in [6.0, 9.0] {
         let mut renderer = twin_renderer(dashes(&[(26.3, run)]));
-        let options = adaptive(64, 64, 2, Correction::Object, CorrectionMethod::Converged);
+        let options = adaptive(64, 64, 2, plainly_converged(Compared::Object));
         let full = full(&mut renderer, 64, 64);
-        let mut wrong = |correction_bridges, correction_thin_only| {
-            let options = RenderOptions { correction_bridges, correction_thin_only, ..options.clone() };
-            planes(&mut renderer, &options).wrong(&full, false).len()
+        let mut wrong = |bridges, thin_only| {
+            planes(&mut renderer, &Rules { thin_only, bridges }.of(&options)).wrong(&full, false).len()
         };
         let (without, with) = (wrong(false, false), wrong(true, false));
         println!("run {run}: {without} wrong pixels, {with} across gaps");
@@ -307,9 +310,9 @@ fn dashes_of_odd_rows_are_found_across_the_gaps() {
     }
     // Beyond the reach nothing is found.
     let mut renderer = twin_renderer(dashes(&[(26.3, 4.0 * BRIDGE_REACH as f32)]));
-    let options = adaptive(64, 64, 2, Correction::Object, CorrectionMethod::Converged);
+    let options = adaptive(64, 64, 2, plainly_converged(Compared::Object));
     let plain = planes(&mut renderer, &options);
-    assert_eq!(planes(&mut renderer, &RenderOptions { correction_bridges: true, ..options }), plain);
+    assert_eq!(planes(&mut renderer, &Rules { thin_only: false, bridges: true }.of(&options)), plain);
 }
 
 /// A bar over the pixels `lo` to `hi` of 64x64, before a wall. The eye holds the light, so that nothing is in shadow.
@@ -326,10 +329,10 @@ fn bar(lo: (f32, f32), hi: (f32, f32)) -> Scene {
 }
 
 /// How many pixels of each row, and of each column, correction fired at a bar.
-fn fired_at(lo: (f32, f32), hi: (f32, f32), correction_thin_only: bool) -> [Vec<(usize, usize)>; 2] {
+fn fired_at(lo: (f32, f32), hi: (f32, f32), thin_only: bool) -> [Vec<(usize, usize)>; 2] {
     let mut renderer = twin_renderer(bar(lo, hi));
-    let options = adaptive(64, 64, 2, Correction::Object, CorrectionMethod::Converged);
-    let found = planes(&mut renderer, &RenderOptions { correction_thin_only, ..options });
+    let options = adaptive(64, 64, 2, plainly_converged(Compared::Object));
+    let found = planes(&mut renderer, &Rules { thin_only, bridges: false }.of(&options));
     [|at: usize| at / 64, |at: usize| at % 64].map(|line| {
         let count = |i: usize| found.fired().iter().filter(|&&at| line(at) == i).count();
         (0..64).map(|i| (i, count(i))).filter(|&(_, fired)| fired > 0).collect()
@@ -377,7 +380,7 @@ fn nothing_that_correction_can_reach_stays_wrong() {
 
 /// For each object of a full picture: its pixels with another object and those with other shadow bits.
 fn broken(renderer: &mut Renderer, full: &Planes, size: u32, correction: Correction) -> Vec<(usize, usize)> {
-    let found = planes(renderer, &adaptive(size, size, 2, correction, CorrectionMethod::Converged));
+    let found = planes(renderer, &adaptive(size, size, 2, correction));
     let mut broken = vec![(0, 0); 13];
     for (at, &object) in full.object.iter().enumerate() {
         broken[object as usize].0 += usize::from(found.object[at] != object);
@@ -392,7 +395,7 @@ fn thin_rods_and_their_shadows_are_broken_without_correction_and_whole_with_it()
     let mut renderer = twin_renderer(builtin::to_scene("rods").unwrap());
     let mut by_correction = |size| {
         let full = full(&mut renderer, size, size);
-        [Correction::Off, Correction::Object, Correction::ObjectAndShadow].map(|correction| {
+        [Correction::Off, plainly_converged(Compared::Object), plainly_converged(Compared::PAPER)].map(|correction| {
             let broken = broken(&mut renderer, &full, size, correction);
             println!("{size}x{size}, {correction:?}: {broken:?}");
             broken
@@ -419,7 +422,7 @@ fn the_sweeps_fire_part_of_the_fixed_point_and_all_of_it_when_repeated() {
     let (mut once_in_all, mut converged_in_all, mut proper) = (0, 0, 0);
     for_all(|renderer, options, shadows, name| {
         let converged = planes(renderer, &options);
-        let sweeps = RenderOptions { correction_method: CorrectionMethod::Sweeps, ..options.clone() };
+        let sweeps = with(&options, |method| method.correction = method.correction.spreading(Spread::Sweeps));
         let once = planes(renderer, &sweeps);
         for at in once.fired() {
             assert_eq!(once.class[at], converged.class[at], "{name}: {at} fired by the sweeps");
@@ -534,7 +537,7 @@ fn the_kernels_give_the_same_for_sources_in_any_order() {
     for scene in [lattice(), builtin::to_scene("rods").unwrap()] {
         let mut renderer = twin_renderer(scene);
         for block in [2, 4] {
-            let options = adaptive(width, height, block, Correction::ObjectAndShadow, CorrectionMethod::Converged);
+            let options = adaptive(width, height, block, plainly_converged(Compared::PAPER));
             let expected = planes(&mut renderer, &options);
             for order in 0..4 {
                 let before = without_correction(&mut renderer, &options);

@@ -45,7 +45,7 @@ fn layers_are_what_they_were() {
         let options = RenderOptions { width: WIDTH, height: HEIGHT, mode: Mode::Adaptive, ..RenderOptions::default() };
         let frame = renderer.render_exactly(&options, Keep::EVERYTHING).unwrap();
         for layer in LAYERS {
-            let drawn = layers::draw(Layer::from_name(layer).unwrap(), &mut renderer, &frame).unwrap();
+            let drawn = layers::draw(layer.parse::<Layer>().unwrap(), &mut renderer, &frame).unwrap();
             let path = golden(name, layer);
             if bless {
                 write_png(&path, WIDTH, HEIGHT, &drawn).unwrap();

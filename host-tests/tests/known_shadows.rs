@@ -6,7 +6,7 @@
 use glam::{Vec2, Vec3};
 use rarefy::layout::*;
 use rarefy::method::frame::{Frame, Keep};
-use rarefy::method::options::{Correction, Mode, RenderOptions};
+use rarefy::method::options::{Mode, RenderOptions};
 use rarefy::render::renderer::Renderer;
 use rarefy::scene::Scene;
 use rarefy_host_tests::fixtures::*;
@@ -14,7 +14,7 @@ use rarefy_host_tests::fixtures::*;
 const SIDE: u32 = 48;
 
 fn adaptive(reuse_shadows: bool) -> RenderOptions {
-    RenderOptions { reuse_shadows, correction: Correction::Off, ..options(Mode::Adaptive, SIDE, SIDE, 2) }
+    with(&options(Mode::Adaptive, SIDE, SIDE, 2), |method| method.reuse_shadows = reuse_shadows)
 }
 
 fn render(renderer: &mut Renderer, options: &RenderOptions) -> Frame {
@@ -97,7 +97,7 @@ fn the_strictest_tolerances_ask_every_light() {
         let mut renderer = twin_renderer(scene);
         let full = render(&mut renderer, &options(Mode::Full, SIDE, SIDE, 2));
         let mut strictest = adaptive(true);
-        strictest.tolerances.t_pos = 0.0;
+        strictest.method.checks.fine.t_pos = 0.0;
         let frame = render(&mut renderer, &strictest);
         assert_eq!(frame.stats.rays, full.stats.rays, "{}", renderer.name());
     }

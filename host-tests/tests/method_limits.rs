@@ -6,7 +6,7 @@
 use glam::{DVec3, Vec2, Vec3};
 use rarefy::layout::*;
 use rarefy::math::{unpack_normal, unpack_texcoord};
-use rarefy::method::options::{Correction, CorrectionMethod, Interpolation, Mode, RenderOptions, Tolerances};
+use rarefy::method::options::{Compared, Correction, Interpolation, Mode, RenderOptions, Tolerances};
 use rarefy::scene::builtin;
 use rarefy::scene::{Material, Scene};
 use rarefy_host_tests::fixtures::*;
@@ -97,8 +97,9 @@ fn the_strictest_tolerances_give_the_full_picture() {
         for (width, height) in ODD_SIZES {
             let full = full_picture(&mut renderer, width, height);
             for block in [2, 4] {
-                for correction in [Correction::Off, Correction::ObjectAndShadow] {
-                    let options = RenderOptions { width, height, correction, ..adaptive(block, zero) };
+                for correction in [Correction::Off, plainly_converged(Compared::PAPER)] {
+                    let options = with(&adaptive(block, zero), |method| method.correction = correction);
+                    let options = RenderOptions { width, height, ..options };
                     let frame = draw(&mut renderer, &options);
                     assert!(frame.pixels == full, "{} at {width}x{height}, blocks of {block}", renderer.name());
                     assert_eq!(frame.stats.pixels.interpolated, 0);
@@ -145,7 +146,7 @@ fn differences_from_means(scene: &Scene, options: &RenderOptions, weight: fn(f64
     let size = (options.width, options.height);
     for at in 0..(size.0 * size.1) as usize {
         let pixel = (at as u32 % size.0, at as u32 / size.0);
-        let Role::Between(references) = role(pixel, size, options.block) else { continue };
+        let Role::Between(references) = role(pixel, size, options.method.block) else { continue };
         if planes[PLANE_CLASS as usize][at] & CLASS_MASK != CLASS_INTERPOLATED {
             continue;
         }
@@ -175,8 +176,8 @@ fn interpolated_pixels_hold_the_means_of_their_references() {
         let scene = builtin::to_scene(name).unwrap();
         for block in [2, 4] {
             let options = RenderOptions { width: 131, height: 97, ..adaptive(block, tolerances(0.3)) };
-            let plain = RenderOptions { interpolation: Interpolation::Plain, ..options.clone() };
-            let options = RenderOptions { interpolation: Interpolation::Perspective, ..options };
+            let plain = with(&options, |method| method.interpolation = Interpolation::Plain);
+            let options = with(&options, |method| method.interpolation = Interpolation::Perspective);
             for worst in [
                 differences_from_means(&scene, &options, perspective),
                 differences_from_means(&scene, &plain, |_, _| 0.5),
@@ -207,7 +208,7 @@ fn interpolation_errors(block: u32, interpolation: Interpolation) -> [f64; 2] {
     // One repetition, and its border far away.
     builder.quad_with(corners, ONCE);
     let mut renderer = twin_renderer(builder.build(1.0));
-    let options = RenderOptions { interpolation, ..adaptive(block, tolerances(100.0)) };
+    let options = with(&adaptive(block, tolerances(100.0)), |method| method.interpolation = interpolation);
     let interpolated = draw(&mut renderer, &options).stats.pixels.interpolated;
     assert!(interpolated > u64::from(W * H) * 7 / 10, "only {interpolated} pixels are interpolated");
     let mut plane =
@@ -241,19 +242,18 @@ fn perspective_interpolation_is_exact_on_planes_and_plain_interpolation_is_not()
 #[test]
 fn every_pixel_has_one_class_and_the_counts_add_up() {
     let corrections = [
-        (Correction::Off, CorrectionMethod::Converged),
-        (Correction::Object, CorrectionMethod::Converged),
-        (Correction::ObjectAndShadow, CorrectionMethod::Converged),
-        (Correction::ObjectAndShadow, CorrectionMethod::Sweeps),
+        Correction::Off,
+        Correction::converged(Compared::Object),
+        Correction::converged(Compared::PAPER),
+        Correction::Sweeps(Compared::PAPER),
     ];
     let mut corrected = 0;
     for scene in pictures() {
         let mut renderer = twin_renderer(scene);
         for (width, height) in ODD_SIZES.into_iter().chain([(96, 64)]) {
-            for (block, (correction, correction_method)) in [2, 4].into_iter().flat_map(|b| corrections.map(|c| (b, c)))
-            {
-                let adaptive = adaptive(block, Tolerances::PAPER);
-                let options = RenderOptions { width, height, correction, correction_method, ..adaptive };
+            for (block, correction) in [2, 4].into_iter().flat_map(|b| corrections.map(|c| (b, c))) {
+                let adaptive = with(&adaptive(block, Tolerances::PAPER), |method| method.correction = correction);
+                let options = RenderOptions { width, height, ..adaptive };
                 let stats = draw(&mut renderer, &options).stats.pixels;
                 let classes = renderer.plane(PLANE_CLASS).unwrap();
                 let count =

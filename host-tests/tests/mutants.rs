@@ -13,9 +13,10 @@ use rarefy::device::kernels::{FILES, Mutation};
 use rarefy::device::opencl::{CacheFolder, OpenOptions};
 use rarefy::device::stage::{Kernel, Stage};
 use rarefy::layout::Traversal;
-use rarefy::method::options::{CorrectionMethod, RenderOptions};
+use rarefy::method::options::{Method, RenderOptions};
 use rarefy::render::renderer::RendererOptions;
 use rarefy::selftest::full;
+use rarefy_host_tests::fixtures::sweeps;
 use rarefy_host_tests::frames::{Prepared, no_opencl, walking_by};
 
 /// The frame that a mutant is drawn in.
@@ -62,18 +63,18 @@ impl Shot {
         match self {
             Shot::Large => (options.width, options.height) = (210, 150),
             Shot::Rods | Shot::RodsSwept | Shot::RodsInBands => (options.width, options.height) = (100, 75),
-            Shot::Strictest => options.tolerances.t_pos = 0.0,
+            Shot::Strictest => options.method.checks.fine.t_pos = 0.0,
             // Large enough that smooth glass, slopes and faint shadows are interpolated too.
             Shot::Zoo => (options.width, options.height, options.depth) = (180, 136, 3),
             Shot::Dashes | Shot::DashesInBands => (options.width, options.height) = (64, 64),
             Shot::Room | Shot::ZooShort | Shot::ZooStackless => {}
-            Shot::Paper => options = RenderOptions { width: 50, height: 38, ..RenderOptions::paper() },
+            Shot::Paper => options.method = Method::paper(),
         }
         if matches!(self, Shot::RodsInBands | Shot::DashesInBands) {
             options.band_rows = Some(8);
         }
         if self == Shot::RodsSwept {
-            options.correction_method = CorrectionMethod::Sweeps;
+            options.method = sweeps();
         }
         options
     }

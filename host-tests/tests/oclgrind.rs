@@ -10,9 +10,10 @@ use rarefy::device::backend::Backend;
 use rarefy::device::kernels::Mutation;
 use rarefy::device::opencl::CacheFolder;
 use rarefy::layout::Traversal;
-use rarefy::method::options::{CorrectionMethod, Mode, RenderOptions};
+use rarefy::method::options::{Mode, RenderOptions};
 use rarefy::render::renderer::{DeviceChoice, Keep, Renderer, RendererOptions};
 use rarefy::scene::builtin;
+use rarefy_host_tests::fixtures::{blocks, sweeps};
 use rarefy_host_tests::frames::{Drawn, Prepared, walking_by};
 
 /// Where Oclgrind writes what it finds; `None` outside of its script.
@@ -45,8 +46,8 @@ fn no_kernel_races_or_leaves_its_buffers() {
     let frames = [
         base.clone(),
         RenderOptions { mode: Mode::Full, ..base.clone() },
-        RenderOptions { block: 4, ..base.clone() },
-        RenderOptions { correction_method: CorrectionMethod::Sweeps, ..base.clone() },
+        RenderOptions { method: blocks(4), ..base.clone() },
+        RenderOptions { method: sweeps(), ..base.clone() },
         RenderOptions { band_rows: Some(6), samples: 2, width: 13, height: 10, ..base },
     ];
     for options in &frames {
@@ -81,8 +82,8 @@ fn no_kernel_reads_what_nobody_wrote() {
     let frames = [
         (base.clone(), false, Traversal::PrivateStack),
         (full.clone(), true, Traversal::PrivateStack),
-        (RenderOptions { block: 4, ..base.clone() }, true, Traversal::PrivateStack),
-        (RenderOptions { correction_method: CorrectionMethod::Sweeps, ..base.clone() }, false, Traversal::PrivateStack),
+        (RenderOptions { method: blocks(4), ..base.clone() }, true, Traversal::PrivateStack),
+        (RenderOptions { method: sweeps(), ..base.clone() }, false, Traversal::PrivateStack),
         (base, true, Traversal::ShortStack),
         (full, true, Traversal::Stackless),
     ];

@@ -3,23 +3,20 @@
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use rarefy::device::opencl::OpenOptions;
-use rarefy::method::options::{RenderOptions, Tolerances};
+use rarefy::method::options::RenderOptions;
+use rarefy_host_tests::fixtures::{blocks, with};
 use rarefy_host_tests::frames::{Prepared, no_opencl};
 
 /// Every check fails: with blocks of 4, fifteen sixteenths of the pixels are sources of correction's first round, each
 /// with five items. That was more than the masks held, and corrupted the heap under OpenCL.
 #[test]
 fn a_frame_in_which_every_check_fails_fits_its_buffers() {
-    let strictest = |t: Tolerances| Tolerances { t_pos: 0.0, ..t };
     for block in [2, 4] {
-        let options = RenderOptions {
-            width: 64,
-            height: 64,
-            block,
-            tolerances: strictest(Tolerances::FINE),
-            coarse_tolerances: strictest(Tolerances::COARSE),
-            ..RenderOptions::default()
-        };
+        let sized = RenderOptions { width: 64, height: 64, method: blocks(block), ..RenderOptions::default() };
+        let options = with(&sized, |method| {
+            method.checks.fine.t_pos = 0.0;
+            method.checks.coarse.t_pos = 0.0;
+        });
         let prepared = Prepared::named("rods");
         let twin = prepared.draw(&mut prepared.twin(), &options, false).unwrap();
         assert_eq!(twin.counts.interpolated, 0);

@@ -7,9 +7,10 @@ use std::collections::HashMap;
 use rarefy::analysis::layers::{self, Layer};
 use rarefy::device::opencl::Profile;
 use rarefy::layout::Traversal;
-use rarefy::method::options::{Correction, CorrectionMethod, Interpolation, Mode, RenderOptions};
+use rarefy::method::options::{Interpolation, Method, Mode, RenderOptions};
 use rarefy::render::renderer::{DeviceChoice, Keep, Renderer, RendererOptions};
 use rarefy::scene::builtin;
+use rarefy_host_tests::fixtures::{blocks, corrections};
 use rarefy_host_tests::frames::{no_opencl, walking_by};
 
 /// Odd sides, so that work-groups stick out on both.
@@ -28,11 +29,7 @@ fn features() -> Vec<(String, RenderOptions, Keep)> {
     let mut features = vec![
         ("full".into(), RenderOptions { mode: Mode::Full, ..base.clone() }, Keep::default()),
         ("adaptive".into(), base.clone(), Keep::default()),
-        (
-            "the paper's rules".into(),
-            RenderOptions { width: WIDTH, height: HEIGHT, ..RenderOptions::paper() },
-            Keep::default(),
-        ),
+        ("the paper's rules".into(), RenderOptions { method: Method::paper(), ..base.clone() }, Keep::default()),
         (
             "4 samples an axis".into(),
             RenderOptions { samples: 4, width: 31, height: 23, ..base.clone() },
@@ -41,13 +38,11 @@ fn features() -> Vec<(String, RenderOptions, Keep)> {
         ("one pixel".into(), RenderOptions { width: 1, height: 1, ..base.clone() }, Keep::default()),
     ];
     for block in [2, 4] {
-        for correction in [Correction::Off, Correction::Object, Correction::ObjectAndShadow, Correction::All] {
-            for correction_method in [CorrectionMethod::Converged, CorrectionMethod::Sweeps] {
-                for interpolation in [Interpolation::Perspective, Interpolation::Plain] {
-                    let name = format!("blocks {block}, {correction:?}, {correction_method:?}, {interpolation:?}");
-                    let options = RenderOptions { block, correction, correction_method, interpolation, ..base.clone() };
-                    features.push((name, options, Keep::default()));
-                }
+        for correction in corrections() {
+            for interpolation in Interpolation::ALL {
+                let name = format!("blocks {block}, {correction}, {interpolation}");
+                let method = Method { correction, interpolation, ..blocks(block) };
+                features.push((name, RenderOptions { method, ..base.clone() }, Keep::default()));
             }
         }
     }
@@ -82,7 +77,7 @@ fn everything(renderer: &mut Renderer) -> Vec<Drawn> {
         let counts = format!("{:?} {:?} {tests:?} {:?}", stats.pixels, stats.rays, stats.failed_tests);
         let mut steps = (stats.work.map(|work| work.traversal_steps), Vec::new());
         if keep.counters {
-            for layer in Layer::NAMES.map(|name| Layer::from_name(name).unwrap()) {
+            for layer in Layer::ALL {
                 if options.mode == Mode::Adaptive || !layer.is_adaptive_only() {
                     let drawn = layers::draw(layer, renderer, &frame).unwrap_or_else(|error| panic!("{at}: {error}"));
                     if layer == Layer::Rays { steps.1 = drawn } else { pictures.push(drawn) }

@@ -6,7 +6,7 @@
 use glam::{DVec3, Vec2, Vec3};
 use rarefy::layout::*;
 use rarefy::math::unpack_texcoord;
-use rarefy::method::options::{RenderOptions, Tolerances};
+use rarefy::method::options::{RenderOptions, TextureRule, Tolerances};
 use rarefy::scene::{Material, Scene};
 use rarefy_host_tests::fixtures::*;
 use rarefy_host_tests::masks::*;
@@ -44,7 +44,8 @@ fn a_pixel_beside_a_straight_edge_needs_no_ray_if_any_opposite_pair_lies_on_one_
         let scene = parted(lean);
         for block in [2, 4] {
             let paper = adaptive(block, tolerances(1.0));
-            let [classes, objects] = classes_and_objects(&scene, &RenderOptions { other_pairs: true, ..paper.clone() });
+            let [classes, objects] =
+                classes_and_objects(&scene, &with(&paper, |method| method.checks.second_pairs = true));
             let [before, _] = classes_and_objects(&scene, &paper);
             for (i, &class) in classes.iter().enumerate() {
                 let (x, y) = (i as u32 % W, i as u32 / W);
@@ -88,7 +89,7 @@ fn a_pair_that_agrees_with_neither_reference_is_no_help() {
         builder.object(matte(Vec3::X));
         builder.wall(Vec2::new(-9.0, bottom), Vec2::new(9.0, top), 0.0);
     }
-    let options = RenderOptions { other_pairs: true, ..adaptive(2, tolerances(1.0)) };
+    let options = with(&adaptive(2, tolerances(1.0)), |method| method.checks.second_pairs = true);
     let mask = |a: (u32, u32), b: (u32, u32)| if a.1 == 20 && b.1 == 22 { FAIL_G1 } else { 0 };
     assert_eq!(mismatches(&builder.build(1.0), &options, &mask), Vec::<String>::new());
 }
@@ -107,7 +108,9 @@ fn tiles() -> Scene {
 #[test]
 fn textures_are_joined_across_their_repetitions() {
     let t = tolerances(1.0);
-    let joined = |t_tex: f32| RenderOptions { unwrap_textures: true, ..adaptive(2, Tolerances { t_tex, ..t }) };
+    let joined = |t_tex: f32| {
+        with(&adaptive(2, Tolerances { t_tex, ..t }), |method| method.checks.textures = TextureRule::Joined)
+    };
     // Two pixels are this far apart on the texture.
     let step = (FRONT.on_wall((2, 0), 0.0) - FRONT.on_wall((0, 0), 0.0)).length() as f32 * 0.8;
     assert_eq!(mismatches(&tiles(), &joined(1.001 * step), &|_, _| 0), Vec::<String>::new());
@@ -135,6 +138,6 @@ fn textures_are_joined_across_their_repetitions() {
     // Half a step of 16 bits for each of the levels that a coordinate passes.
     assert!(error < 3e-5, "a texture coordinate is off by {error}");
     // Negative control: without the test and without joining, coordinates beside a repetition are far off.
-    let error = largest_error(&RenderOptions { tests: FAIL_ALL & !FAIL_TX, ..adaptive(2, t) });
+    let error = largest_error(&without(&adaptive(2, t), FAIL_TX));
     assert!(error > 0.3, "{error}");
 }

@@ -5,7 +5,7 @@
 
 use glam::{DVec3, Vec2, Vec3};
 use rarefy::layout::*;
-use rarefy::method::options::{RenderOptions, Tolerances};
+use rarefy::method::options::Tolerances;
 use rarefy::scene::{Material, Scene};
 use rarefy_host_tests::fixtures::*;
 use rarefy_host_tests::masks::*;
@@ -33,7 +33,7 @@ fn one_test_lights_up(
     let lit = pixels().filter(|&p| matches!(role(p, (W, H), 2), Role::Between([a, b]) if differ(a, b))).count();
     assert!((20..2 * (W * H) as usize / 3).contains(&lit), "{name}: {lit} pixels say little");
 
-    let off = RenderOptions { tests: FAIL_ALL & !fail, ..adaptive(2, t) };
+    let off = without(&adaptive(2, t), fail);
     let wrong = mismatches(scene, &off, &|_, _| 0);
     assert!(wrong.is_empty(), "{name}, switched off: {} wrong, {:#?}", wrong.len(), &wrong[..wrong.len().min(9)]);
 
@@ -198,7 +198,7 @@ fn one_test_lights_up_in_rows(name: &str, scene: &Scene, fail: u32, differ: &dyn
     assert!(wrong.is_empty(), "{name}: {} wrong, {:#?}", wrong.len(), &wrong[..wrong.len().min(9)]);
     let lit: Vec<u32> = (1..W - 1).step_by(2).filter(|&x| differ((x - 1, 0), (x + 1, 0))).collect();
     assert!((5..20).contains(&lit.len()), "{name}: lit columns {lit:?}");
-    let off = RenderOptions { tests: FAIL_ALL & !fail, ..on.clone() };
+    let off = without(&on, fail);
     assert_eq!(mismatches(scene, &off, &|_, _| 0), Vec::<String>::new(), "{name}");
     assert_eq!(mismatches(scene, &on, &|_, _| 0).len(), lit.len() * (H / 2) as usize, "{name}");
 }

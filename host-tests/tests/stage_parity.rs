@@ -13,9 +13,10 @@ use rarefy::device::opencl::{OpenOptions, Profile};
 use rarefy::device::stage::{Kernel, Stage};
 use rarefy::device::twin::executor::TwinBackend;
 use rarefy::layout::{FrameParams, StepParams, expected_probe};
-use rarefy::method::options::{Correction, CorrectionMethod, Interpolation, Mode, RenderOptions};
+use rarefy::method::options::{GcolSpace, Interpolation, Method, Mode, RenderOptions, TestSet};
 use rarefy::prepare::scene_buffers::Shading;
 use rarefy::scene::builtin;
+use rarefy_host_tests::fixtures::{blocks, corrections, sweeps, with};
 use rarefy_host_tests::frames::{Prepared, no_opencl, zoo};
 
 fn sized(width: u32, height: u32) -> RenderOptions {
@@ -53,25 +54,14 @@ fn differing(results: &[KernelParity]) -> Vec<&KernelParity> {
 /// Every combination of the options that choose between paths through the kernels.
 fn combinations(width: u32, height: u32) -> Vec<RenderOptions> {
     let mut all = vec![full(&sized(width, height)), sized(width, height)];
-    all.push(RenderOptions { width, height, ..RenderOptions::paper() });
+    all.push(RenderOptions { method: Method::paper(), ..sized(width, height) });
     for block in [2, 4] {
-        for correction in [Correction::Off, Correction::Object, Correction::ObjectAndShadow] {
-            for correction_method in [CorrectionMethod::Converged, CorrectionMethod::Sweeps] {
-                for interpolation in [Interpolation::Perspective, Interpolation::Plain] {
-                    for gcol_linear in [false, true] {
-                        if correction == Correction::Off && correction_method == CorrectionMethod::Sweeps {
-                            continue;
-                        }
-                        let options = RenderOptions {
-                            block,
-                            correction,
-                            correction_method,
-                            interpolation,
-                            gcol_linear,
-                            ..sized(width, height)
-                        };
-                        all.push(options);
-                    }
+        for correction in corrections() {
+            for interpolation in Interpolation::ALL {
+                for gcol_space in GcolSpace::ALL {
+                    let mut method = Method { correction, interpolation, ..blocks(block) };
+                    method.checks.gcol_space = gcol_space;
+                    all.push(RenderOptions { method, ..sized(width, height) });
                 }
             }
         }
@@ -106,9 +96,8 @@ fn frames_of_every_size_and_scene_equal_the_twin() {
         let mut frames = Vec::new();
         for (i, (width, height)) in sizes.into_iter().enumerate() {
             for block in [2, 4] {
-                frames.push((RenderOptions { block, ..sized(width, height) }, i % 2 == 0));
-                let correction_method = CorrectionMethod::Sweeps;
-                frames.push((RenderOptions { block, correction_method, ..sized(width, height) }, false));
+                frames.push((RenderOptions { method: blocks(block), ..sized(width, height) }, i % 2 == 0));
+                frames.push((RenderOptions { method: Method { block, ..sweeps() }, ..sized(width, height) }, false));
             }
             frames.push((full(&sized(width, height)), i % 2 == 1));
         }
@@ -124,8 +113,11 @@ fn large_frames_with_scans_of_several_levels_equal_the_twin() {
     // 210x150 has 260 chunks of A1 items, more than a scan's work-group of 256.
     let prepared = Prepared::named("cafe");
     let mut device = prepared.device(true, &OpenOptions::default());
-    let four = RenderOptions { block: 4, ..sized(210, 150) };
-    let linear = RenderOptions { gcol_linear: true, interpolation: Interpolation::Plain, ..sized(210, 150) };
+    let four = RenderOptions { method: blocks(4), ..sized(210, 150) };
+    let linear = with(&sized(210, 150), |method| {
+        method.checks.gcol_space = GcolSpace::Linear;
+        method.interpolation = Interpolation::Plain;
+    });
     compare(&prepared, &mut device, [(sized(210, 150), false), (four, true), (linear, true)]);
 }
 
@@ -172,16 +164,17 @@ fn strictest_and_laxest_tolerances_equal_the_twin() {
     }
     let prepared = Prepared::named("zoo");
     let mut device = prepared.device(true, &OpenOptions::default());
-    let with = |t_pos: f32, tests: u32| {
-        let mut options = sized(50, 38);
-        options.tolerances.t_pos = t_pos;
-        options.coarse_tolerances.t_pos = t_pos;
-        options.tests = tests;
-        (options, false)
+    let frame = |t_pos: f32, tests: TestSet| {
+        let checked = with(&sized(50, 38), |method| {
+            method.checks.fine.t_pos = t_pos;
+            method.checks.coarse.t_pos = t_pos;
+            method.checks.tests = tests;
+        });
+        (checked, false)
     };
-    compare(&prepared, &mut device, [with(0.0, rarefy::layout::FAIL_ALL), with(1.0e9, 0)]);
+    compare(&prepared, &mut device, [frame(0.0, TestSet::ALL), frame(1.0e9, TestSet::NONE)]);
     // With no test at all nothing but the border is traced, with the strictest one everything is.
-    let strict = prepared.draw(&mut device, &with(0.0, rarefy::layout::FAIL_ALL).0, false).unwrap();
+    let strict = prepared.draw(&mut device, &frame(0.0, TestSet::ALL).0, false).unwrap();
     assert_eq!(strict.counts.interpolated, 0);
     assert_eq!(strict.pixels, prepared.draw(&mut prepared.twin(), &full(&sized(50, 38)), false).unwrap().pixels);
 }
@@ -194,8 +187,8 @@ fn whole_strict_frames_equal_those_of_the_twin() {
     for name in ["zoo", "mirror-room", "rods", "cafe"] {
         let prepared = Prepared::named(name);
         let mut device = prepared.device(true, &OpenOptions::default());
-        let sweeps = RenderOptions { correction_method: CorrectionMethod::Sweeps, ..sized(96, 64) };
-        let four = RenderOptions { block: 4, ..sized(96, 64) };
+        let sweeps = RenderOptions { method: sweeps(), ..sized(96, 64) };
+        let four = RenderOptions { method: blocks(4), ..sized(96, 64) };
         for options in [sized(96, 64), four, sweeps, full(&sized(96, 64))] {
             let drawn = prepared.draw(&mut device, &options, false).unwrap();
             assert!(drawn == prepared.draw(&mut prepared.twin(), &options, false).unwrap(), "{name}: {options:?}");
@@ -209,7 +202,7 @@ fn forced_slices_and_two_runs_give_the_same_picture() {
         return;
     }
     let prepared = Prepared::named("zoo");
-    for options in [sized(50, 38), full(&sized(50, 38)), RenderOptions { block: 4, ..sized(33, 17) }] {
+    for options in [sized(50, 38), full(&sized(50, 38)), RenderOptions { method: blocks(4), ..sized(33, 17) }] {
         let first = prepared.draw(&mut prepared.device(false, &OpenOptions::default()), &options, false).unwrap();
         let mut again = prepared.device(false, &OpenOptions::default());
         assert!(prepared.draw(&mut again, &options, false).unwrap() == first, "another device object: {options:?}");
@@ -276,7 +269,8 @@ fn real_scenes_are_drawn_alike() {
         let load = |path: &Path| rarefy::scene::load(path, &Monitor::default()).unwrap();
         let prepared = Prepared::new(load(&path), Shading::Full);
         let mut device = prepared.device(true, &OpenOptions::default());
-        for options in [full(&sized(512, 512)), sized(512, 512), RenderOptions { block: 4, ..sized(512, 512) }] {
+        for options in [full(&sized(512, 512)), sized(512, 512), RenderOptions { method: blocks(4), ..sized(512, 512) }]
+        {
             let drawn = prepared.draw(&mut device, &options, false).unwrap();
             let twin = prepared.draw(&mut prepared.twin(), &options, false).unwrap();
             assert!(drawn == twin, "{}: strict builds differ: {options:?}", path.display());

@@ -16,11 +16,11 @@ use rarefy::device::twin::SceneArgs;
 use rarefy::device::twin::scene_args::Work;
 use rarefy::device::twin::traverse::{Hit, any_hit, closest_hit};
 use rarefy::layout::{PLANE_COUNT, Traversal};
-use rarefy::method::options::{CorrectionMethod, Mode, RenderOptions};
+use rarefy::method::options::{Mode, RenderOptions};
 use rarefy::prepare::kdtree::{KdNode, KdTree, MAX_DEPTH};
 use rarefy::prepare::scene_buffers::Shading;
 use rarefy::scene::{Scene, Surface};
-use rarefy_host_tests::fixtures::{Random, SceneBuilder, Stand, glass, matte, mirror, v};
+use rarefy_host_tests::fixtures::{Random, SceneBuilder, Stand, blocks, glass, matte, mirror, sweeps, v};
 use rarefy_host_tests::frames::{Prepared, no_opencl, walking_by};
 
 const WITHOUT_ARRAYS: [Traversal; 2] = [Traversal::ShortStack, Traversal::Stackless];
@@ -211,8 +211,8 @@ fn every_launch_equals_that_of_a_twin_that_walks_alike() {
     let frames = [
         RenderOptions { mode: Mode::Full, ..sized(50, 38) },
         sized(50, 38),
-        RenderOptions { block: 4, ..sized(50, 38) },
-        RenderOptions { correction_method: CorrectionMethod::Sweeps, ..sized(50, 38) },
+        RenderOptions { method: blocks(4), ..sized(50, 38) },
+        RenderOptions { method: sweeps(), ..sized(50, 38) },
     ];
     for traversal in WITHOUT_ARRAYS {
         let mut device = prepared.device(true, &walking_by(traversal));

@@ -9,6 +9,7 @@ use rarefy::layout::Traversal;
 use rarefy::method::options::{Mode, RenderOptions};
 use rarefy::render::renderer::{DeviceChoice, Keep, Renderer, RendererOptions};
 use rarefy::scene::builtin;
+use rarefy_host_tests::fixtures::with;
 use rarefy_host_tests::frames::{no_opencl, walking_by};
 
 fn renderer(device: DeviceChoice, profile: Option<Profile>) -> Renderer {
@@ -52,7 +53,7 @@ fn both_back_ends_and_profiles_agree() {
     }
     assert!(phone.full[0].lanes > expected.full[0].lanes);
     // Negative control: another frame is another model.
-    let other = RenderOptions { correction: rarefy::method::options::Correction::Off, ..options() };
+    let other = with(&options(), |method| method.correction = rarefy::method::options::Correction::Off);
     assert_ne!(wave_model(&mut twin, &other).unwrap(), expected);
 }
 

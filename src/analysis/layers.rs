@@ -3,11 +3,12 @@
 
 use glam::Vec3;
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, Setting};
 use crate::layout::*;
 use crate::math::unpack_normal;
 use crate::method::frame::{Frame, Keep};
 use crate::method::options::Test;
+use crate::names::{find, list};
 use crate::render::renderer::Renderer;
 
 /// A picture of one quantity of a frame.
@@ -34,7 +35,7 @@ pub enum Layer {
 }
 
 impl Layer {
-    /// Every layer's name, as on the command line.
+    /// Every layer's name.
     pub const NAMES: [&str; 15] = [
         "color",
         "class",
@@ -53,20 +54,24 @@ impl Layer {
         "rays",
     ];
 
-    /// The layer called `name`.
-    pub fn from_name(name: &str) -> Option<Layer> {
-        Some(match name {
-            "color" => Layer::Color,
-            "class" => Layer::Class,
-            "fail-mask" => Layer::FailMask,
-            "object" => Layer::Object,
-            "normal" => Layer::Normal,
-            "depth" => Layer::Depth,
-            "shadow" => Layer::Shadow,
-            "rays" => Layer::Rays,
-            _ => Layer::FailedTest(Test::from_name(name.strip_prefix("test-")?)?),
-        })
-    }
+    /// Every layer, in the order of [`Layer::NAMES`].
+    pub const ALL: [Layer; 15] = [
+        Layer::Color,
+        Layer::Class,
+        Layer::FailMask,
+        Layer::FailedTest(Test::G1),
+        Layer::FailedTest(Test::G2),
+        Layer::FailedTest(Test::G3),
+        Layer::FailedTest(Test::G4),
+        Layer::FailedTest(Test::Tx),
+        Layer::FailedTest(Test::Sh),
+        Layer::FailedTest(Test::Gc),
+        Layer::Object,
+        Layer::Normal,
+        Layer::Depth,
+        Layer::Shadow,
+        Layer::Rays,
+    ];
 
     /// What a frame must keep for this layer.
     pub fn needs(self) -> Keep {
@@ -102,7 +107,7 @@ fn unit_byte(v: f32) -> u32 {
 /// Draws `layer` of the frame that `renderer` drew last: a pixel for each sample, but for [`Layer::Color`].
 ///
 /// # Errors
-/// [`Error::InvalidOption`] if the frame kept too little for this layer; a failing read.
+/// [`Error::MissingPlane`] if the frame kept too little for this layer; a failing read.
 pub fn draw(layer: Layer, renderer: &mut Renderer, frame: &Frame) -> Result<Vec<u32>> {
     match layer {
         Layer::Color => Ok(frame.pixels.clone()),
@@ -225,14 +230,20 @@ fn heat(share: f32) -> u32 {
     }
 }
 
-/// The layer called `name`.
-///
-/// # Errors
-/// [`Error::InvalidOption`] with the names that there are.
-pub fn parse(name: &str) -> Result<Layer> {
-    Layer::from_name(name).ok_or_else(|| {
-        Error::option("--layer", format!("there is no layer `{name}`; the layers are {}", Layer::NAMES.join(", ")))
-    })
+impl std::fmt::Display for Layer {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let at = Layer::ALL.iter().position(|layer| layer == self);
+        f.pad(at.map_or("", |at| Layer::NAMES[at]))
+    }
+}
+
+impl std::str::FromStr for Layer {
+    type Err = Error;
+
+    fn from_str(name: &str) -> Result<Layer> {
+        let at = find(&Layer::NAMES, name);
+        at.map(|at| Layer::ALL[at]).ok_or_else(|| Error::option(Setting::Layer, name, list(&Layer::NAMES)))
+    }
 }
 
 #[cfg(test)]
@@ -241,9 +252,13 @@ mod tests {
 
     #[test]
     fn every_name_is_a_layer() {
-        for name in Layer::NAMES {
-            assert!(Layer::from_name(name).is_some(), "{name}");
+        for (name, layer) in Layer::NAMES.into_iter().zip(Layer::ALL) {
+            assert_eq!(name.parse::<Layer>().unwrap(), layer);
+            assert_eq!(layer.to_string(), name);
         }
-        assert!(Layer::from_name("test-xy").is_none());
+        for test in Test::ALL {
+            assert_eq!(Layer::FailedTest(test).to_string(), format!("test-{test}"));
+        }
+        assert!("test-xy".parse::<Layer>().unwrap_err().to_string().contains("fail-mask"));
     }
 }

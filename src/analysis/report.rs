@@ -89,7 +89,7 @@ fn head(renderer: &mut Renderer, options: &RenderOptions, load_ms: f64) -> Map<S
         ("width", json!(options.width)),
         ("height", json!(options.height)),
         ("samples_per_axis", json!(options.samples)),
-        ("block", json!(options.block)),
+        ("block", json!(options.method.block)),
         (
             "device",
             json!({"name": info.name, "version": info.version, "backend": info.backend, "profile": info.profile, "lanes": 1}),

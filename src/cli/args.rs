@@ -2,13 +2,17 @@
 //! The command line's grammar, and its translation into the library's options.
 
 use std::path::PathBuf;
+use std::str::FromStr;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use rarefy::device::profiles::Profile;
-use rarefy::method::options::{Correction, CorrectionMethod, Interpolation, Mode, RenderOptions, Test};
+use rarefy::error::Setting;
+use rarefy::method::options::{Mode, RenderOptions};
 use rarefy::prepare::scene_buffers::Shading;
 use rarefy::render::renderer::{DeviceChoice, RendererOptions};
 use rarefy::{Error, Result};
+
+use super::method::MethodArgs;
 
 /// A ray tracer that traces a quarter to a third of the pixels and rebuilds the rest.
 #[derive(Debug, Parser)]
@@ -53,87 +57,15 @@ fn parse_size(text: &str) -> std::result::Result<Size, String> {
     Ok(Size { width: width.trim().parse().map_err(|_| bad())?, height: height.trim().parse().map_err(|_| bad())? })
 }
 
-fn parse_device(text: &str) -> std::result::Result<DeviceChoice, String> {
-    match text.split_once(':').unwrap_or((text, "")) {
-        ("auto", "") => Ok(DeviceChoice::Auto),
-        ("cpu", "") => Ok(DeviceChoice::Cpu),
-        ("opencl", "") => Ok(DeviceChoice::OpenCl(None)),
-        ("opencl", n) => {
-            n.parse().map(|n| DeviceChoice::OpenCl(Some(n))).map_err(|_| format!("`{n}` is not a device number"))
-        }
-        _ => Err(format!("`{text}` is not auto, cpu, opencl or opencl:N")),
-    }
+/// Reads what the library names: a mode, a device, a set of tests.
+pub fn named<T: FromStr<Err = Error>>(text: &str) -> std::result::Result<T, String> {
+    text.parse().map_err(|error| match error {
+        Error::InvalidOption { value, allowed, .. } => format!("`{value}` is not one of these: {allowed}"),
+        other => other.to_string(),
+    })
 }
 
-/// `--correction`.
-#[derive(Debug, Clone, Copy, ValueEnum)]
-pub enum CorrectionArg {
-    /// None.
-    Off,
-    /// Compare object ids.
-    Object,
-    /// Compare object ids and shadow bits.
-    #[value(name = "object+shadow")]
-    ObjectAndShadow,
-    /// Compare object ids, shadow bits, normals and reflected colours.
-    All,
-}
-
-/// `--correction-method`.
-#[derive(Debug, Clone, Copy, ValueEnum)]
-pub enum CorrectionMethodArg {
-    /// Rounds until nothing changes.
-    Converged,
-    /// The paper's single round of four sweeps.
-    Sweeps,
-}
-
-/// `--interpolation`.
-#[derive(Debug, Clone, Copy, ValueEnum)]
-pub enum InterpolationArg {
-    /// Midway on the screen.
-    Perspective,
-    /// Midway in space, as in the paper.
-    Plain,
-}
-
-/// `--mode`.
-#[derive(Debug, Clone, Copy, ValueEnum)]
-pub enum ModeArg {
-    /// The method.
-    Adaptive,
-    /// A ray tree for every pixel.
-    Full,
-}
-
-/// `--shading`.
-#[derive(Debug, Clone, Copy, ValueEnum)]
-pub enum ShadingArg {
-    /// Everything the scene asks for.
-    Full,
-    /// The rules of the speed anchor.
-    Anchor,
-}
-
-/// `--gcol-space`.
-#[derive(Debug, Clone, Copy, ValueEnum)]
-pub enum GcolSpaceArg {
-    /// Square roots of the channels, close to what a display shows.
-    Display,
-    /// Linear light.
-    Linear,
-}
-
-/// `--rules`.
-#[derive(Debug, Clone, Copy, ValueEnum)]
-pub enum RulesArg {
-    /// Our defaults.
-    Ours,
-    /// The paper's tolerances, interpolation and correction.
-    Paper,
-}
-
-/// `--build`.
+/// `--build`: the one choice of the command that the library has as a switch.
 #[derive(Debug, Clone, Copy, ValueEnum)]
 pub enum BuildArg {
     /// What the device does fastest.
@@ -153,64 +85,24 @@ pub struct DrawArgs {
     /// Samples per pixel and axis: 1, 2 or 4.
     #[arg(long, default_value_t = 1)]
     pub samples: u32,
-    /// Side of the base blocks: 2, or 4 for two levels.
-    #[arg(long, default_value_t = 2)]
-    pub blocks: u32,
     /// Most secondary rays in a chain; straight ones through panes of thin glass do not count.
     #[arg(long, default_value_t = 4)]
     pub depth: u32,
-    /// Whose defaults count for the options below.
-    #[arg(long, value_enum, default_value = "ours")]
-    pub rules: RulesArg,
-    /// What post-correction compares; all by default.
-    #[arg(long, value_enum)]
-    pub correction: Option<CorrectionArg>,
-    /// How post-correction spreads; converged by default.
-    #[arg(long, value_enum)]
-    pub correction_method: Option<CorrectionMethodArg>,
-    /// Where between its references an interpolated pixel lies; perspective by default.
-    #[arg(long, value_enum)]
-    pub interpolation: Option<InterpolationArg>,
-    /// From which difference of a colour channel of 0 to 255 on pixels look different, for the lenient shadow test and
-    /// for correction; 0: always.
-    #[arg(long)]
-    pub t_visible: Option<u32>,
-    /// G2: largest distance of the two hits, as a share of the scene's extent.
-    #[arg(long, allow_negative_numbers = true)]
-    pub t_pos: Option<f32>,
-    /// G3: least dot product of the normals.
-    #[arg(long, allow_negative_numbers = true)]
-    pub t_norm: Option<f32>,
-    /// G4: sine of the slope below which a surface counts as flat.
-    #[arg(long, allow_negative_numbers = true)]
-    pub t_conv: Option<f32>,
-    /// TX: how near to the border of its repetition a texture coordinate counts as at the border.
-    #[arg(long, allow_negative_numbers = true)]
-    pub t_tex: Option<f32>,
-    /// GC: largest distance of the reflected colours.
-    #[arg(long, allow_negative_numbers = true)]
-    pub t_gcol: Option<f32>,
-    /// GC: compare reflected colours as displayed or linearly.
-    #[arg(long, value_enum)]
-    pub gcol_space: Option<GcolSpaceArg>,
-    /// Tests to switch off, such as gc,tx.
-    #[arg(long, value_delimiter = ',')]
-    pub disable_test: Vec<String>,
+    /// How adaptive frames are drawn.
+    #[command(flatten)]
+    pub method: MethodArgs,
     /// Which device draws: auto, cpu, opencl or opencl:N.
-    #[arg(long, value_parser = parse_device, default_value = "auto")]
+    #[arg(long, value_parser = named::<DeviceChoice>, default_value = "auto")]
     pub device: DeviceChoice,
     /// Hold the OpenCL device to a profile's limits: none, a built-in name such as adreno-420, or a file.
     #[arg(long, default_value = "none")]
     pub profile: String,
-    /// Rays per work-item.
-    #[arg(long, default_value = "auto")]
-    pub lanes: String,
     /// Most device memory in MiB.
     #[arg(long, value_name = "MiB")]
     pub memory_budget: Option<u64>,
     /// Shading rules.
-    #[arg(long, value_enum, default_value = "full")]
-    pub shading: ShadingArg,
+    #[arg(long, value_parser = named::<Shading>, default_value = "full", value_name = "full|anchor")]
+    pub shading: Shading,
     /// Kernels: the device's fastest, or bit for bit like the CPU twin.
     #[arg(long, value_enum, default_value = "fast")]
     pub build: BuildArg,
@@ -222,22 +114,15 @@ pub struct DrawArgs {
 impl DrawArgs {
     /// The renderer's options.
     pub fn renderer_options(&self) -> Result<RendererOptions> {
-        if !matches!(self.lanes.as_str(), "auto" | "1" | "1:1") {
-            let message = format!("`{}` is not available; one ray per work-item is: 1", self.lanes);
-            return Err(Error::option("--lanes", message));
-        }
         let budget = self.memory_budget.map(|mib| {
             let bytes = mib.checked_mul(1 << 20).filter(|&bytes| bytes > 0);
-            bytes.ok_or_else(|| Error::option("--memory-budget", format!("{mib} MiB is out of range")))
+            bytes.ok_or_else(|| Error::option(Setting::MemoryBudget, format!("{mib} MiB"), "1 MiB or more"))
         });
         Ok(RendererOptions {
             device: self.device,
             profile: profile(&self.profile)?,
             strict: matches!(self.build, BuildArg::Strict),
-            shading: match self.shading {
-                ShadingArg::Full => Shading::Full,
-                ShadingArg::Anchor => Shading::Anchor,
-            },
+            shading: self.shading,
             memory_budget_bytes: budget.transpose()?,
             ..RendererOptions::default()
         })
@@ -245,64 +130,15 @@ impl DrawArgs {
 
     /// The frame's options in `mode`.
     pub fn render_options(&self, mode: Mode) -> Result<RenderOptions> {
-        let base = match self.rules {
-            RulesArg::Ours => RenderOptions::default(),
-            RulesArg::Paper => RenderOptions::paper(),
-        };
-        let mut options = RenderOptions {
+        let options = RenderOptions {
             width: self.size.width,
             height: self.size.height,
             samples: self.samples,
             mode,
-            block: self.blocks,
             depth: self.depth,
-            correction: match self.correction {
-                None => base.correction,
-                Some(CorrectionArg::Off) => Correction::Off,
-                Some(CorrectionArg::Object) => Correction::Object,
-                Some(CorrectionArg::ObjectAndShadow) => Correction::ObjectAndShadow,
-                Some(CorrectionArg::All) => Correction::All,
-            },
-            correction_method: match self.correction_method {
-                None => base.correction_method,
-                Some(CorrectionMethodArg::Converged) => CorrectionMethod::Converged,
-                Some(CorrectionMethodArg::Sweeps) => CorrectionMethod::Sweeps,
-            },
-            interpolation: match self.interpolation {
-                None => base.interpolation,
-                Some(InterpolationArg::Perspective) => Interpolation::Perspective,
-                Some(InterpolationArg::Plain) => Interpolation::Plain,
-            },
-            gcol_linear: match self.gcol_space {
-                None => base.gcol_linear,
-                Some(GcolSpaceArg::Display) => false,
-                Some(GcolSpaceArg::Linear) => true,
-            },
-            t_visible: self.t_visible.unwrap_or(base.t_visible),
-            correction_t_visible: self.t_visible.unwrap_or(base.correction_t_visible),
-            ..base
+            method: self.method.method()?,
+            ..RenderOptions::default()
         };
-        // A tolerance that is given counts at every level of blocks.
-        for tolerances in [&mut options.tolerances, &mut options.coarse_tolerances] {
-            let given = [self.t_pos, self.t_norm, self.t_conv, self.t_tex, self.t_gcol];
-            let members = [
-                &mut tolerances.t_pos,
-                &mut tolerances.t_norm,
-                &mut tolerances.t_conv,
-                &mut tolerances.t_tex,
-                &mut tolerances.t_gcol,
-            ];
-            for (member, value) in members.into_iter().zip(given) {
-                *member = value.unwrap_or(*member);
-            }
-        }
-        for name in &self.disable_test {
-            let test = Test::from_name(name).ok_or_else(|| {
-                let known = Test::ALL.map(Test::name).join(", ");
-                Error::option("--disable-test", format!("there is no test `{name}`; the tests are {known}"))
-            })?;
-            options.tests &= !test.fail_bit();
-        }
         options.validate()?;
         Ok(options)
     }
@@ -331,8 +167,8 @@ pub struct RenderArgs {
     #[arg(short, long, default_value = "out.png")]
     pub output: PathBuf,
     /// Which pixels get rays.
-    #[arg(long, value_enum, default_value = "adaptive")]
-    pub mode: ModeArg,
+    #[arg(long, value_parser = named::<Mode>, default_value = "adaptive", value_name = "adaptive|full")]
+    pub mode: Mode,
     /// Also write a layer: color, class, fail-mask, test-g1 to test-gc, object, normal, depth, shadow, rays.
     #[arg(long, value_name = "NAME=FILE.png")]
     pub layer: Vec<String>,
@@ -385,7 +221,7 @@ pub struct DevicesArgs {
 #[derive(Debug, Args)]
 pub struct SelftestArgs {
     /// Which device to test: auto, cpu, opencl or opencl:N.
-    #[arg(long, value_parser = parse_device, default_value = "auto")]
+    #[arg(long, value_parser = named::<DeviceChoice>, default_value = "auto")]
     pub device: DeviceChoice,
     /// Hold the OpenCL device to a profile's limits.
     #[arg(long, default_value = "none")]

@@ -23,7 +23,7 @@ use super::progress::{make_renderer, watched};
 pub fn run(args: &CompareArgs, interrupt: &Interrupt) -> Result<()> {
     let options = args.draw.render_options(Mode::Adaptive)?;
     if args.frames == 0 {
-        return Err(Error::option("--frames", "0 frames cannot be timed; at least 1 is needed"));
+        return Err(Error::argument("--frames", "0 frames cannot be timed; at least 1 is needed"));
     }
     check_json_writable(args.draw.json.as_deref())?;
     if let Some(folder) = &args.output {
@@ -79,7 +79,7 @@ fn table(renderer: &mut Renderer, options: &RenderOptions, c: &Comparison) -> Ve
                 1 => String::new(),
                 samples => format!(" with {samples}x{samples} samples"),
             },
-            options.block,
+            options.method.block,
             info.name
         ),
         format!(

@@ -34,7 +34,7 @@ pub fn run(args: &DiffArgs) -> Result<()> {
     );
     match json {
         Some(path) => {
-            let mut value = serde_json::to_value(quality).map_err(|e| Error::option("--json", e.to_string()))?;
+            let mut value = serde_json::to_value(quality).map_err(|e| Error::argument("--json", e.to_string()))?;
             if let Some(object) = value.as_object_mut() {
                 // There is no mask of interpolated pixels for two files.
                 object.remove("psnr_interpolated_db");

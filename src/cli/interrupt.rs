@@ -7,6 +7,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use rarefy::{Cancel, Result};
 
+use super::output::complain;
+
 /// What a shell reports of a command that Ctrl-C ended: 128 and the number of the signal.
 const STATUS: u8 = 130;
 
@@ -58,5 +60,5 @@ pub fn end() -> ExitCode {
 }
 
 fn say() {
-    eprintln!("rarefy: interrupted");
+    complain("interrupted");
 }

@@ -7,7 +7,9 @@ mod compare;
 mod devices;
 mod diff;
 mod doctor;
+mod errors;
 mod interrupt;
+mod method;
 mod output;
 mod progress;
 mod render;
@@ -16,6 +18,7 @@ mod selftest;
 use std::process::ExitCode;
 
 use clap::Parser;
+use clap::error::ErrorKind;
 use rarefy::{Error, Result};
 
 use args::{Cli, Command};
@@ -23,17 +26,30 @@ use interrupt::Interrupt;
 
 /// Runs the command that the process was started with.
 pub fn run() -> ExitCode {
-    // clap ends with status 2 on a wrong command line, as this program's errors do.
-    let cli = Cli::parse();
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) => return usage(&error),
+    };
     let interrupt = Interrupt::catch();
     match dispatch(&cli.command, &interrupt) {
         Ok(good) => ExitCode::from(if good { 0 } else { 1 }),
         Err(Error::Cancelled) => interrupt::end(),
         Err(error) => {
-            eprintln!("rarefy: {error}");
+            output::complain(&errors::line(&error));
             ExitCode::from(2)
         }
     }
+}
+
+/// Help and version as clap prints them, a wrong command line in one line.
+fn usage(error: &clap::Error) -> ExitCode {
+    if !error.use_stderr() || error.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
+        // Whoever closed the pipe has read enough.
+        let _ = error.print();
+    } else {
+        output::complain(&errors::usage(&error.render().to_string()));
+    }
+    ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2))
 }
 
 fn dispatch(command: &Command, interrupt: &Interrupt) -> Result<bool> {

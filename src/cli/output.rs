@@ -29,14 +29,20 @@ pub fn say(json: Option<&Path>, line: &str) {
     };
 }
 
+/// Prints one line about what went wrong to standard error, if that can be written.
+pub fn complain(line: &str) {
+    let _ = writeln!(std::io::stderr(), "rarefy: {line}");
+}
+
 /// Prints notices and warnings to standard error; long lists are cut.
 pub fn warn_all(warnings: &[String]) {
     const MOST: usize = 8;
     for warning in warnings.iter().take(MOST) {
-        eprintln!("warning: {warning}");
+        let _ = writeln!(std::io::stderr(), "warning: {warning}");
     }
     if warnings.len() > MOST {
-        eprintln!("warning: and {} more; `rarefy doctor` lists all", warnings.len() - MOST);
+        let more = warnings.len() - MOST;
+        let _ = writeln!(std::io::stderr(), "warning: and {more} more; `rarefy doctor` lists all");
     }
 }
 

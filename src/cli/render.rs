@@ -10,23 +10,23 @@ use rarefy::render::picture::write_png;
 use rarefy::render::renderer::Keep;
 use rarefy::{Error, Result};
 
-use super::args::{ModeArg, RenderArgs};
+use super::args::RenderArgs;
 use super::interrupt::Interrupt;
 use super::output::{check_json_writable, check_writable, say, warn_all, write_json};
 use super::progress::{make_renderer, watched};
 
 /// Draws one frame; writes the picture, the layers and the statistics.
 pub fn run(args: &RenderArgs, interrupt: &Interrupt) -> Result<()> {
-    let mode = match args.mode {
-        ModeArg::Full => Mode::Full,
-        ModeArg::Adaptive => Mode::Adaptive,
-    };
+    let mode = args.mode;
     let options = args.draw.render_options(mode)?;
     let layers = args.layer.iter().map(|text| parse_layer(text)).collect::<Result<Vec<_>>>()?;
     let mut keep = Keep::default();
     for (layer, path) in &layers {
         if mode == Mode::Full && layer.is_adaptive_only() {
-            return Err(Error::option("--layer", "full tracing has no such layer; use --mode adaptive"));
+            return Err(Error::argument(
+                "--layer",
+                format!("full tracing has no layer `{layer}`; use --mode adaptive"),
+            ));
         }
         keep = keep.and(layer.needs());
         check_writable(path)?;
@@ -76,6 +76,6 @@ fn parse_layer(text: &str) -> Result<(Layer, PathBuf)> {
     let (name, path) = text
         .split_once('=')
         .filter(|(_, path)| !path.is_empty())
-        .ok_or_else(|| Error::option("--layer", format!("`{text}` is not NAME=FILE.png")))?;
-    Ok((layers::parse(name)?, PathBuf::from(path)))
+        .ok_or_else(|| Error::argument("--layer", format!("`{text}` is not NAME=FILE.png")))?;
+    Ok((name.parse()?, PathBuf::from(path)))
 }

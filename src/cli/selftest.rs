@@ -7,7 +7,8 @@ use rarefy::selftest::full as selftest;
 use rarefy::{Error, Result};
 
 use super::args::{SelftestArgs, profile};
-use super::output::say;
+use super::errors;
+use super::output::{complain, say};
 
 /// Prints every check; true if all passed.
 pub fn run(args: &SelftestArgs) -> Result<bool> {
@@ -16,7 +17,7 @@ pub fn run(args: &SelftestArgs) -> Result<bool> {
         Some(name) => {
             let stage = Stage::ALL.into_iter().find(|s| s.name() == name).ok_or_else(|| {
                 let known = Stage::ALL.map(Stage::name).join(", ");
-                Error::option("--break-stage", format!("there is no stage `{name}`; the stages are {known}"))
+                Error::argument("--break-stage", format!("there is no stage `{name}`; the stages are {known}"))
             })?;
             Some(selftest::breaking_mutation(stage))
         }
@@ -34,7 +35,7 @@ pub fn run(args: &SelftestArgs) -> Result<bool> {
         say(None, &format!("  {word:5} {:15} {}", check.name, check.detail));
     }
     if let Err(error) = result.require() {
-        eprintln!("rarefy: {error}");
+        complain(&errors::line(&error));
     }
     Ok(result.passed())
 }

@@ -7,7 +7,7 @@ use crate::device::stage::Kernel;
 use crate::device::twin::pack::grid_items;
 use crate::error::Result;
 use crate::layout::*;
-use crate::method::options::{Correction, CorrectionMethod, Interpolation, RenderOptions};
+use crate::method::options::{Correction, RenderOptions};
 
 /// How many pixels of a frame went which way.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -193,39 +193,17 @@ fn grid(frame: &FrameParams, origin: (u32, u32), step: (u32, u32)) -> StepParams
 /// columns of A2 by themselves where they may also use what the even ones found.
 fn adaptive_grids(frame: &FrameParams, stride: u32, options: &RenderOptions, extent: f32) -> Vec<AdaptiveGrid> {
     let half = stride / 2;
-    let checks = |step| with_checks(step, stride == 2, options, extent);
+    let checks = |step| options.method.check_params(step, stride == 2, extent);
     let step2 = checks(StepParams { reference_dx: half, ..grid(frame, (half, 0), (stride, stride)) });
     let step3 = |left, width| checks(StepParams { reference_dy: half, ..grid(frame, (left, half), (width, stride)) });
     let a1 = AdaptiveGrid { check: Kernel::Step2a, pack: STEP2B, trace: Kernel::Step2c, params: step2 };
     let a2 = |params| AdaptiveGrid { check: Kernel::Step3a, pack: STEP3B, trace: Kernel::Step3c, params };
-    if options.other_pairs {
+    if options.method.checks.second_pairs {
         let odd = step3(half, stride);
         let odd = StepParams { flags: odd.flags | STEP_OTHER_PAIRS, ..odd };
         vec![a1, a2(step3(0, stride)), a2(odd)]
     } else {
         vec![a1, a2(step3(0, half))]
-    }
-}
-
-fn with_checks(step: StepParams, is_finest: bool, options: &RenderOptions, extent: f32) -> StepParams {
-    let tolerances = if is_finest { &options.tolerances } else { &options.coarse_tolerances };
-    let perspective = if options.interpolation == Interpolation::Perspective { STEP_PERSPECTIVE } else { 0 };
-    let gcol_linear = if options.gcol_linear { STEP_GCOL_LINEAR } else { 0 };
-    let unwrap = if options.unwrap_textures { STEP_UNWRAP } else { 0 };
-    // References four pixels apart agree about too little.
-    let reuse_shadows = if options.reuse_shadows && is_finest { STEP_REUSE_SHADOWS } else { 0 };
-    StepParams {
-        t_pos: tolerances.t_pos * extent,
-        t_norm: tolerances.t_norm,
-        t_conv: tolerances.t_conv,
-        t_tex: tolerances.t_tex,
-        t_gcol: tolerances.t_gcol,
-        tests: options.tests,
-        // The strictest tolerances trace every pixel, whatever it looks like.
-        lenient_tests: if tolerances.t_pos > 0.0 { options.lenient_tests } else { 0 },
-        t_visible: options.t_visible,
-        flags: STEP_STORE | perspective | gcol_linear | unwrap | reuse_shadows,
-        ..step
     }
 }
 
@@ -271,29 +249,13 @@ fn correct(
     given: &GivenList,
     listed: u32,
 ) -> Result<u32> {
-    let flags = match options.correction {
-        Correction::Off => return Ok(0),
-        Correction::Object => STEP_STORE,
-        Correction::ObjectAndShadow => STEP_STORE | STEP_COMPARE_SHADOW,
-        Correction::All => STEP_STORE | STEP_COMPARE_SHADOW | STEP_COMPARE_SHADING,
-    };
-    let gcol_linear = if options.gcol_linear { STEP_GCOL_LINEAR } else { 0 };
-    // Lines are swept side by side: what lies beside a line may be changing.
-    let converged = options.correction_method == CorrectionMethod::Converged;
-    let thin_only = if options.correction_thin_only && converged { STEP_THIN_ONLY } else { 0 };
-    let reuse_shadows = if options.reuse_shadows { STEP_REUSE_SHADOWS } else { 0 };
-    let step = StepParams {
-        flags: flags | gcol_linear | thin_only | reuse_shadows,
-        t_visible: options.correction_t_visible,
-        t_norm: options.correction_t_norm,
-        t_gcol: options.correction_t_gcol,
-        // A plan's windows are such that every list address is a 32-bit number.
-        list_end: most_listed_pixels(frame) as u32,
-        ..bytemuck::Zeroable::zeroed()
-    };
-    match options.correction_method {
-        CorrectionMethod::Converged => correct_converged(backend, &step, options.correction_bridges, given, listed),
-        CorrectionMethod::Sweeps => correct_by_sweeps(backend, frame, &step),
+    let Some(step) = options.method.correction_params() else { return Ok(0) };
+    // A plan's windows are such that every list address is a 32-bit number.
+    let step = StepParams { list_end: most_listed_pixels(frame) as u32, ..step };
+    match options.method.correction {
+        Correction::Off => Ok(0),
+        Correction::Converged { bridges, .. } => correct_converged(backend, &step, bridges, given, listed),
+        Correction::Sweeps(_) => correct_by_sweeps(backend, frame, &step),
     }
 }
 

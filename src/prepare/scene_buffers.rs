@@ -20,6 +20,8 @@ pub enum Shading {
     Anchor,
 }
 
+crate::names::named!(Shading of Shading { Full = "full", Anchor = "anchor" });
+
 /// Every array a ray needs (`SCENE_PARAMS` of `kernels/types.h`, without the frame's own parameters).
 #[derive(Debug, Clone)]
 pub struct SceneBuffers {

@@ -52,7 +52,7 @@ impl Job<'_> {
     }
 
     pub fn params(&self) -> FrameParams {
-        let block = if self.is_full() { 1 } else { self.options.block };
+        let block = if self.is_full() { 1 } else { self.options.method.block };
         let (width, height) = self.options.sample_size();
         frame_params(self.view, self.buffers, width, height, block, self.options.depth)
     }

@@ -251,12 +251,12 @@ impl Renderer {
         self.kept_plane(PLANE_COUNT + plane, "counters")
     }
 
-    fn kept_plane(&mut self, plane: u32, what: &str) -> Result<Vec<u32>> {
+    fn kept_plane(&mut self, plane: u32, what: &'static str) -> Result<Vec<u32>> {
         let words = match &self.last_frame {
             Some(last) => last.plane(self.device.backend(), plane)?,
             None => None,
         };
-        words.ok_or_else(|| Error::option("layer", format!("the last frame did not keep these {what}")))
+        words.ok_or(Error::MissingPlane { plane: what })
     }
 
     /// The scene's name.

@@ -13,7 +13,7 @@ use crate::device::kernels::Mutation;
 use crate::device::stage::Stage;
 use crate::device::twin::executor::TwinBackend;
 use crate::error::Result;
-use crate::method::options::{CorrectionMethod, RenderOptions};
+use crate::method::options::{Method, RenderOptions, Spread};
 use crate::monitor::Monitor;
 use crate::prepare::scene_buffers::{SceneBuffers, Shading};
 use crate::render::renderer::{DeviceChoice, RendererOptions};
@@ -86,8 +86,11 @@ fn frames() -> [RenderOptions; 3] {
     let base = RenderOptions { width: WIDTH, height: HEIGHT, ..RenderOptions::default() };
     [
         base.clone(),
-        RenderOptions { block: 4, ..base.clone() },
-        RenderOptions { correction_method: CorrectionMethod::Sweeps, ..base },
+        RenderOptions { method: Method { block: 4, ..base.method }, ..base.clone() },
+        RenderOptions {
+            method: Method { correction: base.method.correction.spreading(Spread::Sweeps), ..base.method },
+            ..base
+        },
     ]
 }
 

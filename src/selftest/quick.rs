@@ -167,9 +167,10 @@ pub(crate) fn run_frame(
     options: &RenderOptions,
     counters: bool,
 ) -> Result<()> {
-    let params = frame_params(scene.view(), buffers, options.width, options.height, options.block, options.depth);
+    let params =
+        frame_params(scene.view(), buffers, options.width, options.height, options.method.block, options.depth);
     let sizes = BufferSizes::new(&params, true, counters, backend.scan_group());
-    let sizes = sizes.ok_or_else(|| Error::option("size", "a self-test frame does not fit the address space"))?;
+    let sizes = sizes.ok_or_else(|| Error::argument("size", "a self-test frame does not fit the address space"))?;
     backend.begin(&params, &sizes)?;
     pipeline::adaptive_frame(backend, &params, options, scene.view().extent)?;
     Ok(())

@@ -20,7 +20,7 @@ const METHODS: &[NativeMethod] = &[
 /// Fails with an error of the Rarefy library.
 fn fail<'local>(env: &mut Env<'local>, _class: JClass<'local>, text: JString<'local>) -> Result<i32, Failure> {
     let text = text.try_to_string(env)?;
-    Err(rarefy::Error::option("--probe", text).into())
+    Err(rarefy::Error::argument("--probe", text).into())
 }
 
 /// Panics with a formatted text.

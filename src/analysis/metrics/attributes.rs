@@ -25,12 +25,12 @@ impl WrongPixels {
 /// differ in any bit.
 ///
 /// # Errors
-/// [`Error::InvalidOption`] if a plane has not `width` x `height` values.
+/// [`Error::InvalidArgument`] if a plane has not `width` x `height` values.
 pub fn wrong_pixels(reference: &[u32], test: &[u32], width: u32, height: u32) -> Result<WrongPixels> {
     let count = u64::from(width) * u64::from(height);
     for (name, plane) in [("reference plane", reference), ("test plane", test)] {
         if plane.len() as u64 != count {
-            return Err(Error::option(name, format!("{} values for {width}x{height} pixels", plane.len())));
+            return Err(Error::argument(name, format!("{} values for {width}x{height} pixels", plane.len())));
         }
     }
     let mut wrong: Vec<bool> = reference.iter().zip(test).map(|(a, b)| a != b).collect();

@@ -10,7 +10,7 @@ pub const CUSTOMARY_GAIN: u32 = 10;
 /// The absolute difference of each 8-bit channel times `gain`, limited to 255; alpha is 255.
 ///
 /// # Errors
-/// [`crate::Error::InvalidOption`] if the sizes differ.
+/// [`crate::Error::InvalidArgument`] if the sizes differ.
 pub fn difference_picture(reference: Rgb8, test: Rgb8, gain: u32) -> Result<Vec<u32>> {
     reference.same_size(test)?;
     let pixel = |(&a, &b): (&u32, &u32)| {

@@ -57,7 +57,7 @@ pub struct Flip {
 /// Mean and 99th percentile of the FLIP error.
 ///
 /// # Errors
-/// [`crate::Error::InvalidOption`] if the sizes differ.
+/// [`crate::Error::InvalidArgument`] if the sizes differ.
 pub fn flip(reference: Rgb8, test: Rgb8) -> Result<Flip> {
     let mut errors = flip_map(reference, test)?;
     let count = errors.len();
@@ -71,7 +71,7 @@ pub fn flip(reference: Rgb8, test: Rgb8) -> Result<Flip> {
 /// The FLIP error of each pixel, 0 to 1, row by row.
 ///
 /// # Errors
-/// [`crate::Error::InvalidOption`] if the sizes differ.
+/// [`crate::Error::InvalidArgument`] if the sizes differ.
 pub fn flip_map(reference: Rgb8, test: Rgb8) -> Result<Vec<f32>> {
     reference.same_size(test)?;
     let observer = Observer::new();

@@ -34,11 +34,11 @@ impl<'a> Rgb8<'a> {
     /// A view of `width` x `height` pixels.
     ///
     /// # Errors
-    /// [`Error::InvalidOption`] if a side is 0 or `pixels` has another length.
+    /// [`Error::InvalidArgument`] if a side is 0 or `pixels` has another length.
     pub fn new(width: u32, height: u32, pixels: &'a [u32]) -> Result<Self> {
         if width == 0 || height == 0 || pixels.len() as u64 != u64::from(width) * u64::from(height) {
             let message = format!("{} pixels for {width}x{height}; each side must be at least 1", pixels.len());
-            return Err(Error::option("picture", message));
+            return Err(Error::argument("picture", message));
         }
         Ok(Rgb8 { width, height, pixels })
     }
@@ -70,7 +70,7 @@ impl<'a> Rgb8<'a> {
             return Ok(());
         }
         let sizes = format!("{}x{} pixels, the test {}x{}", self.width, self.height, test.width, test.height);
-        Err(Error::option("picture sizes", format!("the reference has {sizes}; only pictures of one size compare")))
+        Err(Error::argument("picture sizes", format!("the reference has {sizes}; only pictures of one size compare")))
     }
 }
 
@@ -92,7 +92,7 @@ pub struct Quality {
 /// All measures of two pictures; which pixels were interpolated is unknown.
 ///
 /// # Errors
-/// [`Error::InvalidOption`] if the sizes differ.
+/// [`Error::InvalidArgument`] if the sizes differ.
 pub fn compare(reference: Rgb8, test: Rgb8) -> Result<Quality> {
     let flip = flip(reference, test)?;
     Ok(Quality {
@@ -107,7 +107,7 @@ pub fn compare(reference: Rgb8, test: Rgb8) -> Result<Quality> {
 /// All measures of two pictures, with the PSNR of the pixels that `interpolated` marks.
 ///
 /// # Errors
-/// [`Error::InvalidOption`] if the sizes differ.
+/// [`Error::InvalidArgument`] if the sizes differ.
 pub fn compare_interpolated(reference: Rgb8, test: Rgb8, interpolated: &[bool]) -> Result<Quality> {
     let psnr_interpolated_db = psnr_masked(reference, test, interpolated)?;
     Ok(Quality { psnr_interpolated_db, ..compare(reference, test)? })

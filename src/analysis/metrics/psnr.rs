@@ -10,7 +10,7 @@ use crate::{Error, Result};
 /// result is the same everywhere.
 ///
 /// # Errors
-/// [`Error::InvalidOption`] if the sizes differ.
+/// [`Error::InvalidArgument`] if the sizes differ.
 pub fn psnr(reference: Rgb8, test: Rgb8) -> Result<Option<f64>> {
     reference.same_size(test)?;
     let pairs = reference.pixels().iter().zip(test.pixels());
@@ -22,12 +22,12 @@ pub fn psnr(reference: Rgb8, test: Rgb8) -> Result<Option<f64>> {
 /// `None` if those pixels are equal, or if there are none.
 ///
 /// # Errors
-/// [`Error::InvalidOption`] if the sizes differ.
+/// [`Error::InvalidArgument`] if the sizes differ.
 pub fn psnr_masked(reference: Rgb8, test: Rgb8, mask: &[bool]) -> Result<Option<f64>> {
     reference.same_size(test)?;
     let count = reference.pixels().len();
     if mask.len() != count {
-        return Err(Error::option("mask", format!("{} values for pictures of {count} pixels", mask.len())));
+        return Err(Error::argument("mask", format!("{} values for pictures of {count} pixels", mask.len())));
     }
     let (mut sum, mut chosen) = (0u64, 0usize);
     for ((&a, &b), _) in reference.pixels().iter().zip(test.pixels()).zip(mask).filter(|&(_, &m)| m) {

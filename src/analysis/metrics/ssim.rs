@@ -21,7 +21,7 @@ const C2: f64 = (0.03 * 255.0) * (0.03 * 255.0);
 /// Mean SSIM, from -1 to 1; 1 for equal pictures.
 ///
 /// # Errors
-/// [`crate::Error::InvalidOption`] if the sizes differ.
+/// [`crate::Error::InvalidArgument`] if the sizes differ.
 pub fn ssim(reference: Rgb8, test: Rgb8) -> Result<f64> {
     reference.same_size(test)?;
     let columns = windows(reference.width() as usize);

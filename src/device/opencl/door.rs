@@ -17,7 +17,7 @@ use super::slices::Planner;
 use super::timing::{Timing, Wait};
 use crate::device::profiles::{Choices, Profile};
 use crate::monitor::Monitor;
-use crate::{Error, Result};
+use crate::{Error, Result, error::Setting};
 
 /// How to open a device.
 #[derive(Debug, Clone, Default)]
@@ -141,9 +141,8 @@ fn open_again(options: &OpenOptions, reopened: u32) -> Result<Door> {
     let index = options.index.unwrap_or(0);
     if index >= count {
         let names: Vec<String> =
-            found.devices.iter().enumerate().map(|(n, device)| format!("{n} ({})", device.info.name)).collect();
-        let message = format!("there is no OpenCL device {index}; there are: {}", names.join(", "));
-        return Err(Error::option("--device", message));
+            found.devices.iter().enumerate().map(|(n, device)| format!("opencl:{n} ({})", device.info.name)).collect();
+        return Err(Error::option(Setting::Device, format!("opencl:{index}"), names.join(", ")));
     }
     let device = found.devices.swap_remove(index);
     let limits = Limits::new(&device.profile, options.profile.as_ref());

@@ -66,7 +66,7 @@ impl Door {
     pub fn program(&self, source: &ProgramSource) -> Result<Program> {
         let what = format!("program `{}`", source.name);
         if source.options.contains("-cl-std") {
-            return Err(Error::option(what, "the language version is fixed: no -cl-std among its options"));
+            return Err(Error::argument(what, "the language version is fixed: no -cl-std among its options"));
         }
         self.limits().check_version(&what, (1, 2))?;
         for extension in switched_on(source.source) {
@@ -84,7 +84,7 @@ impl Door {
             env!("CARGO_PKG_VERSION"),
         ]);
         let c_options =
-            CString::new(options).map_err(|_| Error::option(&what, "its options contain a NUL character"))?;
+            CString::new(options).map_err(|_| Error::argument(&what, "its options contain a NUL character"))?;
         let make = |program, from_cache| Program {
             program,
             shared: self.shared.clone(),

@@ -14,6 +14,7 @@ use serde_json::{Map, Value};
 pub use choices::{Choices, MemoryPath, Traversal};
 
 use crate::device::opencl::{Kind, Query};
+use crate::error::Setting;
 use crate::{Error, Result, files};
 
 /// How well a value is known.
@@ -127,10 +128,10 @@ impl Profile {
     pub fn named(name: &str) -> Result<Self> {
         match EMBEDDED.iter().find(|(known, _)| *known == name) {
             Some((known, text)) => Self::from_json(known, text),
-            None => Err(Error::option(
-                "--profile",
-                format!("no profile is called `{name}`; there are {}, and any profile file", Self::names().join(", ")),
-            )),
+            None => {
+                let allowed = format!("{}, or the path of a profile file", Self::names().join(", "));
+                Err(Error::option(Setting::Profile, name, allowed))
+            }
         }
     }
 
@@ -312,7 +313,7 @@ impl Profile {
 }
 
 pub(crate) fn bad(place: &str, message: impl std::fmt::Display) -> Error {
-    Error::option("--profile", format!("{place}: {message}"))
+    Error::profile(place, message)
 }
 
 fn unknown(place: &str, key: &str) -> Error {
@@ -444,7 +445,7 @@ mod tests {
             ("cl_device_single_fp_config", "[\"CL_FP_MAGIC\"]", "flag names"),
         ] {
             let message = with_limit(key, value).unwrap_err().to_string();
-            assert!(message.starts_with("--profile: test.json: "), "{message}");
+            assert!(message.starts_with("test.json: "), "{message}");
             assert!(message.contains(key) && message.contains(must), "{message}");
         }
         assert!(with_limit("cl_device_max_mem_alloc_size", "1").is_ok());

@@ -24,7 +24,7 @@ use crate::device::backend::{Backend, FrameBuffer};
 use crate::error::{Error, Result};
 use crate::layout::FrameParams;
 use crate::method::frame::Keep;
-use crate::method::options::{Correction, CorrectionMethod, Mode, RenderOptions};
+use crate::method::options::{Correction, Mode, RenderOptions};
 use crate::method::pipeline::{self, Given, PixelCounts};
 
 /// Rows of the first window that repairs a band; each further one of the same chain has twice as many.
@@ -67,7 +67,7 @@ pub fn draw(
         }
         return Ok((frame.counts, frame.collected));
     }
-    if options.correction != Correction::Off && options.correction_method == CorrectionMethod::Sweeps {
+    if matches!(options.method.correction, Correction::Sweeps(_)) {
         return Err(Error::LimitExceeded {
             what: "post-correction by sweeps".into(),
             limit: "--memory-budget".into(),

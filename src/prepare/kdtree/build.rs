@@ -12,7 +12,7 @@ use super::clip::{Cell, Corners, Primitive, cell_epsilon, split_primitive, whole
 use super::sah::{Costs, Scratch, Split, best_split};
 use super::{KdNode, KdTree, MAX_DEPTH};
 use crate::monitor::Monitor;
-use crate::{Error, Result};
+use crate::{Error, Result, error::Setting};
 
 /// Cost of an inner node on a ray's way, the unit of [`INTERSECTION_COST`].
 const TRAVERSAL_COST: f32 = 1.0;
@@ -77,19 +77,21 @@ impl Default for BuildOptions {
 
 impl BuildOptions {
     fn check(&self) -> Result<()> {
-        for (name, cost) in [("traversal_cost", self.traversal_cost), ("intersection_cost", self.intersection_cost)] {
+        let costs =
+            [(Setting::KdTraversalCost, self.traversal_cost), (Setting::KdIntersectionCost, self.intersection_cost)];
+        for (setting, cost) in costs {
             if !(cost.is_finite() && cost > 0.0) {
-                return Err(Error::option(name, format!("is {cost}, must be a finite number above 0")));
+                return Err(Error::option(setting, cost, "a finite number above 0"));
             }
         }
         if !(0.0..1.0).contains(&self.empty_bonus) {
-            return Err(Error::option("empty_bonus", format!("is {}, must be in [0, 1)", self.empty_bonus)));
+            return Err(Error::option(Setting::KdEmptyBonus, self.empty_bonus, "0 or more and less than 1"));
         }
         if let Some(depth) = self.max_depth.filter(|&depth| depth > MAX_DEPTH) {
-            return Err(Error::option("max_depth", format!("is {depth}, must be at most {MAX_DEPTH}")));
+            return Err(Error::option(Setting::KdMaxDepth, depth, format!("0 to {MAX_DEPTH}")));
         }
         if self.threads == Some(0) {
-            return Err(Error::option("threads", "is 0, must be at least 1"));
+            return Err(Error::option(Setting::KdThreads, 0, "1 or more"));
         }
         Ok(())
     }
@@ -140,8 +142,10 @@ impl KdTree {
             None | Some(1) => grow(),
             Some(threads) => {
                 let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-                pool.map_err(|e| Error::option("threads", format!("{threads} threads cannot be started: {e}")))?
-                    .install(grow)
+                pool.map_err(|e| {
+                    Error::option(Setting::KdThreads, threads, format!("less: they cannot be started ({e})"))
+                })?
+                .install(grow)
             }
         };
         // A cancelled tree is a stump.

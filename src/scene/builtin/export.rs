@@ -112,5 +112,5 @@ pub fn write_model(model: &Model, folder: &Path) -> Result<()> {
 }
 
 fn refuse(folder: &Path, message: &str) -> Error {
-    Error::option("-o", format!("{}: {message}", folder.display()))
+    Error::io(folder, std::io::Error::new(std::io::ErrorKind::AlreadyExists, message))
 }

@@ -19,6 +19,7 @@ use serde::de::DeserializeOwned;
 pub use export::{mtl_text, obj_text};
 pub use model::{Finish, Group, Model, Picture};
 
+use crate::error::Setting;
 use crate::{Error, Result, Scene};
 
 /// The names of all built-in scenes.
@@ -51,8 +52,7 @@ pub fn generate(name: &str) -> Result<Model> {
             include_str!("../../../scenes/mirror-room/view.json"),
         )?,
         _ => {
-            let message = format!("no built-in scene has this name; there are {}", NAMES.join(", "));
-            return Err(Error::option(name, message));
+            return Err(Error::option(Setting::BuiltinScene, name, crate::names::list(&NAMES)));
         }
     };
     model.finish()

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! A method as kernels read it: members of [`StepParams`].
+
+use super::{Compared, Correction, GcolSpace, Interpolation, Method, Test, TextureRule};
+use crate::layout::*;
+
+fn flag(is_on: bool, flag: u32) -> u32 {
+    if is_on { flag } else { 0 }
+}
+
+impl Method {
+    /// `step` with what the checks of one level read. Positions are compared in scene units, hence the `extent`.
+    pub(crate) fn check_params(&self, step: StepParams, is_finest: bool, extent: f32) -> StepParams {
+        let checks = &self.checks;
+        let tolerances = if is_finest { &checks.fine } else { &checks.coarse };
+        // The strictest tolerances trace every pixel, whatever it looks like.
+        let is_lenient = checks.t_shadow > 0 && tolerances.t_pos > 0.0;
+        StepParams {
+            t_pos: tolerances.t_pos * extent,
+            t_norm: tolerances.t_norm,
+            t_conv: tolerances.t_conv,
+            t_tex: tolerances.t_tex,
+            t_gcol: tolerances.t_gcol,
+            tests: checks.tests.fail_bits(),
+            lenient_tests: flag(is_lenient, Test::Sh.fail_bit()),
+            t_visible: checks.t_shadow.into(),
+            flags: STEP_STORE
+                | flag(self.interpolation == Interpolation::Perspective, STEP_PERSPECTIVE)
+                | flag(checks.gcol_space == GcolSpace::Linear, STEP_GCOL_LINEAR)
+                | flag(checks.textures == TextureRule::Joined, STEP_UNWRAP)
+                // References four pixels apart agree about too little.
+                | flag(self.reuse_shadows && is_finest, STEP_REUSE_SHADOWS),
+            ..step
+        }
+    }
+
+    /// What every launch of post-correction reads; `None` without correction.
+    pub(crate) fn correction_params(&self) -> Option<StepParams> {
+        let compared = self.correction.compared()?;
+        let (t_norm, t_gcol) = match compared {
+            Compared::All { t_norm, t_gcol, .. } => (t_norm, t_gcol),
+            Compared::Object | Compared::ObjectAndShadow { .. } => (0.0, 0.0),
+        };
+        // Sweeps walk lines side by side: what lies beside a line may be changing.
+        let thin_only = matches!(self.correction, Correction::Converged { thin_only: true, .. });
+        Some(StepParams {
+            flags: STEP_STORE
+                | flag(compared != Compared::Object, STEP_COMPARE_SHADOW)
+                | flag(matches!(compared, Compared::All { .. }), STEP_COMPARE_SHADING)
+                | flag(self.checks.gcol_space == GcolSpace::Linear, STEP_GCOL_LINEAR)
+                | flag(thin_only, STEP_THIN_ONLY)
+                | flag(self.reuse_shadows, STEP_REUSE_SHADOWS),
+            t_visible: compared.t_visible().unwrap_or(0).into(),
+            t_norm,
+            t_gcol,
+            ..bytemuck::Zeroable::zeroed()
+        })
+    }
+}
