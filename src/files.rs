@@ -107,6 +107,46 @@ impl Seek for InputFile {
 /// # Errors
 /// [`Error::Io`] if it cannot be written.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
+    match target(path)? {
+        Target::New => replace(path, path, bytes, None),
+        Target::File(target, permissions) => replace(path, &target, bytes, Some(permissions)),
+        Target::Stream => write_to_stream(path, bytes).map_err(|e| Error::io(path, e)),
+    }
+}
+
+/// Refuses, without writing anything, what [`write_whole`] would refuse as well: for checks before long work. Returns
+/// what tells the file from others: its full name without links, or none where writing replaces nothing (a pipe, a
+/// device).
+///
+/// # Errors
+/// [`Error::Io`] if it cannot be written.
+pub fn check_writable(path: &Path) -> Result<Option<PathBuf>> {
+    let folder = match target(path)? {
+        Target::Stream => return Ok(None),
+        Target::File(target, _) => return Ok(Some(target)),
+        Target::New => folder_of(path),
+    };
+    match fs::metadata(&folder) {
+        Ok(m) if !m.is_dir() => Err(Error::io(&folder, io::Error::other("this is not a folder"))),
+        Ok(_) => {
+            let folder = fs::canonicalize(&folder).map_err(|e| Error::io(&folder, e))?;
+            Ok(path.file_name().map(|name| folder.join(name)))
+        }
+        Err(e) => Err(Error::io(&folder, e)),
+    }
+}
+
+/// What writing to a path means.
+enum Target {
+    /// Nothing is there.
+    New,
+    /// This file is replaced by one with these permissions.
+    File(PathBuf, fs::Permissions),
+    /// A pipe or a device.
+    Stream,
+}
+
+fn target(path: &Path) -> Result<Target> {
     let failed = |e: io::Error| Error::io(path, e);
     let refuse = |message: &str| Err(failed(io::Error::new(io::ErrorKind::InvalidInput, message)));
     if path.as_os_str().is_empty() {
@@ -117,7 +157,7 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
         Err(_) if fs::symlink_metadata(path).is_ok_and(|m| m.is_symlink()) => {
             return refuse("this is a symbolic link to nothing; remove it or name its target");
         }
-        Err(_) => return replace(path, path, bytes, None),
+        Err(_) => return Ok(Target::New),
     };
     if existing.is_dir() {
         return Err(failed(io::Error::new(io::ErrorKind::IsADirectory, "this is a folder, name a file in it")));
@@ -127,14 +167,13 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
             let message = "the file is write-protected; name another one or change its permissions";
             return Err(failed(io::Error::new(io::ErrorKind::PermissionDenied, message)));
         }
-        let target = fs::canonicalize(path).map_err(failed)?;
-        return replace(path, &target, bytes, Some(existing.permissions()));
+        return Ok(Target::File(fs::canonicalize(path).map_err(failed)?, existing.permissions()));
     }
     if !takes_a_stream(existing.file_type()) {
         let kind = kind(existing.file_type()).unwrap_or("no file");
         return refuse(&format!("this is {kind}, name a file"));
     }
-    write_to_stream(path, bytes).map_err(failed)
+    Ok(Target::Stream)
 }
 
 /// Puts a file in place of whatever has its name, a symbolic link as well: for files that are ours alone.

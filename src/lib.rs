@@ -21,6 +21,8 @@
 //! }
 //! ```
 
+#![deny(clippy::print_stdout, clippy::print_stderr)]
+
 pub mod analysis;
 pub mod device;
 pub mod error;

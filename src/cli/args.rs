@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The command line's grammar, and its translation into the library's options.
 
+use std::ffi::{OsStr, OsString};
 use std::path::PathBuf;
 use std::str::FromStr;
 
@@ -78,7 +79,7 @@ pub enum BuildArg {
 #[derive(Debug, Args)]
 pub struct DrawArgs {
     /// A folder with scene.obj and view.json, an OBJ file, or the name of a built-in scene.
-    pub scene: String,
+    pub scene: PathBuf,
     /// Size of the picture in pixels.
     #[arg(long, value_parser = parse_size, default_value = "1024x1024", allow_hyphen_values = true)]
     pub size: Size,
@@ -96,7 +97,7 @@ pub struct DrawArgs {
     pub device: DeviceChoice,
     /// Hold the OpenCL device to a profile's limits: none, a built-in name such as adreno-420, or a file.
     #[arg(long, default_value = "none")]
-    pub profile: String,
+    pub profile: OsString,
     /// Most device memory in MiB.
     #[arg(long, value_name = "MiB")]
     pub memory_budget: Option<u64>,
@@ -145,16 +146,8 @@ impl DrawArgs {
 }
 
 /// The profile that `name` means: none, a built-in one, or a file's.
-pub fn profile(name: &str) -> Result<Option<Profile>> {
-    if name == "none" {
-        return Ok(None);
-    }
-    if Profile::names().contains(&name) { Profile::named(name).map(Some) } else { load_profile(name).map(Some) }
-}
-
-fn load_profile(name: &str) -> Result<Profile> {
-    let looks_like_a_path = name.contains(['/', '.', '#']);
-    if looks_like_a_path { Profile::load(std::path::Path::new(name)) } else { Profile::named(name) }
+pub fn profile(name: &OsStr) -> Result<Option<Profile>> {
+    Profile::find(name)
 }
 
 /// `rarefy render`.
@@ -171,7 +164,7 @@ pub struct RenderArgs {
     pub mode: Mode,
     /// Also write a layer: color, class, fail-mask, test-g1 to test-gc, object, normal, depth, shadow, rays.
     #[arg(long, value_name = "NAME=FILE.png")]
-    pub layer: Vec<String>,
+    pub layer: Vec<OsString>,
 }
 
 /// `rarefy compare`.
@@ -214,7 +207,7 @@ pub struct DevicesArgs {
     pub json: Option<PathBuf>,
     /// Show limits and choices beside those under this profile; `none`: the device's alone.
     #[arg(long, default_value = "adreno-420")]
-    pub profile: String,
+    pub profile: OsString,
 }
 
 /// `rarefy selftest`.
@@ -225,7 +218,7 @@ pub struct SelftestArgs {
     pub device: DeviceChoice,
     /// Hold the OpenCL device to a profile's limits.
     #[arg(long, default_value = "none")]
-    pub profile: String,
+    pub profile: OsString,
     /// Break this stage's kernel on purpose: the self-test must fail and name it.
     #[arg(long, value_name = "STAGE")]
     pub break_stage: Option<String>,
@@ -235,7 +228,7 @@ pub struct SelftestArgs {
 #[derive(Debug, Args)]
 pub struct DoctorArgs {
     /// A folder with scene.obj and view.json, an OBJ file, or the name of a built-in scene.
-    pub scene: String,
+    pub scene: PathBuf,
     /// Write the findings as JSON into this file; `-` is standard output.
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,

@@ -16,8 +16,12 @@ use rarefy::{Cancel, Error, Result};
 
 use super::args::CompareArgs;
 use super::interrupt::Interrupt;
-use super::output::{check_json_writable, say, warn_all, write_json};
+use super::output::{say, warn_all, write_json};
+use super::outputs::Outputs;
 use super::progress::{make_renderer, watched};
+
+/// The pictures that are written into the folder.
+const PICTURES: [&str; 5] = ["full.png", "adaptive.png", "difference.png", "class.png", "fail-mask.png"];
 
 /// Draws both ways in turn; prints the table, writes pictures and JSON.
 pub fn run(args: &CompareArgs, interrupt: &Interrupt) -> Result<()> {
@@ -25,9 +29,11 @@ pub fn run(args: &CompareArgs, interrupt: &Interrupt) -> Result<()> {
     if args.frames == 0 {
         return Err(Error::argument("--frames", "0 frames cannot be timed; at least 1 is needed"));
     }
-    check_json_writable(args.draw.json.as_deref())?;
+    let mut outputs = Outputs::of_scene(&args.draw.scene, Path::new(&args.draw.profile));
+    outputs.json(args.draw.json.as_deref())?;
     if let Some(folder) = &args.output {
         std::fs::create_dir_all(folder).map_err(|e| Error::io(folder, e))?;
+        PICTURES.iter().try_for_each(|name| outputs.picture("-o", &folder.join(name)))?;
     }
     let (mut renderer, load_ms) = make_renderer(&args.draw.scene, &args.draw.renderer_options()?, interrupt)?;
     let notices = renderer.notices().len();
@@ -139,14 +145,14 @@ fn write_pictures(folder: &Path, options: &RenderOptions, c: &Comparison, cancel
     let test = Rgb8::new(width, height, &frame.pixels)?;
     let samples = options.sample_size();
     let pictures = [
-        ("full.png", (width, height), c.full_picture.clone()),
-        ("adaptive.png", (width, height), frame.pixels.clone()),
-        ("difference.png", (width, height), difference_picture(reference, test, CUSTOMARY_GAIN)?),
-        ("class.png", samples, layers::class_picture(&c.classes)),
-        ("fail-mask.png", samples, layers::fail_mask_picture(&c.classes)),
+        ((width, height), c.full_picture.clone()),
+        ((width, height), frame.pixels.clone()),
+        ((width, height), difference_picture(reference, test, CUSTOMARY_GAIN)?),
+        (samples, layers::class_picture(&c.classes)),
+        (samples, layers::fail_mask_picture(&c.classes)),
     ];
     let mut lines = Vec::new();
-    for (name, (width, height), pixels) in pictures {
+    for (name, ((width, height), pixels)) in PICTURES.into_iter().zip(pictures) {
         let path = folder.join(name);
         cancel.check()?;
         write_png(&path, width, height, &pixels)?;

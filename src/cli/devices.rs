@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! `rarefy devices`.
 
+use std::path::Path;
+
 use rarefy::Result;
 use rarefy::device::opencl::executor::{scan_group, work_group};
 use rarefy::device::opencl::{DeviceFound, Limits, Profile, discover};
@@ -10,6 +12,7 @@ use rarefy::render::renderer::DEFAULT_BUDGET_BYTES;
 
 use super::args::{DevicesArgs, profile};
 use super::output::{say, write_json};
+use super::outputs::Outputs;
 
 /// What the kernels can do today; a profile may already choose more.
 const MEMORY_PATHS: [MemoryPath; 1] = [MemoryPath::Buffers];
@@ -18,12 +21,14 @@ const LANES: [u32; 1] = [1];
 /// Lists devices with their limits and what would be chosen, beside the same under a profile.
 pub fn run(args: &DevicesArgs) -> Result<()> {
     let profile = profile(&args.profile)?;
+    Outputs::of_inputs([Path::new(&args.profile)]).json(args.json.as_deref())?;
     let discovery = discover();
     let json = args.json.as_deref();
+    let title = args.profile.to_string_lossy();
     for (index, device) in discovery.devices.iter().enumerate() {
         say(json, &format!("opencl:{index}  {}", device.info.describe()));
         let under: Vec<Option<&Profile>> = std::iter::once(None).chain(profile.as_ref().map(Some)).collect();
-        let titles: Vec<&str> = ["device", args.profile.as_str()].into_iter().take(under.len()).collect();
+        let titles: Vec<&str> = ["device", &title].into_iter().take(under.len()).collect();
         table(&titles, "limit", &under.iter().map(|p| limit_rows(&device.limits(*p))).collect::<Vec<_>>())
             .iter()
             .for_each(|line| say(json, line));

@@ -7,14 +7,16 @@ use rarefy::{Error, Result};
 use serde_json::json;
 
 use super::args::DiffArgs;
-use super::output::{check_json_writable, check_writable, say, write_json};
+use super::output::{say, write_json};
+use super::outputs::Outputs;
 
 /// Measures two pictures; writes the difference and the figures.
 pub fn run(args: &DiffArgs) -> Result<()> {
+    let mut outputs = Outputs::of_inputs([args.reference.as_path(), &args.test]);
     if let Some(path) = &args.output {
-        check_writable(path)?;
+        outputs.picture("-o", path)?;
     }
-    check_json_writable(args.json.as_deref())?;
+    outputs.json(args.json.as_deref())?;
     let (width, height, reference) = read_rgb8(&args.reference)?;
     let (test_width, test_height, test) = read_rgb8(&args.test)?;
     let reference = Rgb8::new(width, height, &reference)?;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! `rarefy doctor`.
 
+use std::path::Path;
+
 use rarefy::Result;
 use rarefy::scene::doctor::{Severity, examine};
 use serde_json::json;
@@ -8,10 +10,12 @@ use serde_json::json;
 use super::args::DoctorArgs;
 use super::interrupt::Interrupt;
 use super::output::{say, write_json};
+use super::outputs::Outputs;
 use super::progress::load_scene;
 
 /// Prints what is odd about a scene.
 pub fn run(args: &DoctorArgs, interrupt: &Interrupt) -> Result<()> {
+    Outputs::of_scene(&args.scene, Path::new("")).json(args.json.as_deref())?;
     let scene = load_scene(&args.scene, interrupt)?;
     let findings = examine(&scene);
     let json = args.json.as_deref();

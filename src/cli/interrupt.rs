@@ -33,8 +33,9 @@ impl Interrupt {
                 }
             }
         });
-        if let Err(error) = caught {
-            log::warn!("Ctrl-C cannot be caught: {error}");
+        match caught {
+            Ok(()) => keep_from_children(),
+            Err(error) => log::warn!("Ctrl-C cannot be caught: {error}"),
         }
         Interrupt { current }
     }
@@ -43,7 +44,9 @@ impl Interrupt {
     pub fn watch<T>(&self, work: impl FnOnce(&Cancel) -> Result<T>) -> Result<T> {
         let cancel = Cancel::default();
         self.set(Some(cancel.clone()));
-        let done = work(&cancel).and_then(|done| cancel.check().map(|()| done));
+        // Whatever failed after the cancel failed because of it, or does not matter any more.
+        let done = work(&cancel);
+        let done = cancel.check().and(done);
         self.set(None);
         done
     }
@@ -52,6 +55,20 @@ impl Interrupt {
         *self.current.lock().unwrap_or_else(PoisonError::into_inner) = cancel;
     }
 }
+
+/// Keeps Ctrl-C, which a terminal sends to every process in the foreground, from compilers and linkers that a driver
+/// starts: PoCL ends the whole process when its linker is ended. Threads that are made from here on, and processes that
+/// they start, inherit the mask; the handler's own thread, which is there already, still gets the signal.
+#[cfg(unix)]
+fn keep_from_children() {
+    use nix::sys::signal::{SigSet, Signal};
+    if let Err(error) = SigSet::from(Signal::SIGINT).thread_block() {
+        log::warn!("a driver's compiler may be interrupted: {error}");
+    }
+}
+
+#[cfg(not(unix))]
+fn keep_from_children() {}
 
 /// Says that the command was interrupted; its exit status.
 pub fn end() -> ExitCode {

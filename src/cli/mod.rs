@@ -11,6 +11,7 @@ mod errors;
 mod interrupt;
 mod method;
 mod output;
+mod outputs;
 mod progress;
 mod render;
 mod selftest;

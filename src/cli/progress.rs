@@ -86,20 +86,19 @@ pub fn watched<T>(
 }
 
 /// The scene that `name` means: a file or folder, else a built-in scene.
-pub fn load_scene(name: &str, interrupt: &Interrupt) -> Result<Scene> {
+pub fn load_scene(name: &Path, interrupt: &Interrupt) -> Result<Scene> {
     with_bar(interrupt, |monitor| load(name, monitor))
 }
 
-fn load(name: &str, monitor: &Monitor) -> Result<Scene> {
-    let path = Path::new(name);
-    if !path.exists() && builtin::NAMES.contains(&name) {
-        return builtin::to_scene(name);
+fn load(path: &Path, monitor: &Monitor) -> Result<Scene> {
+    match path.to_str() {
+        Some(name) if builtin::NAMES.contains(&name) && !path.exists() => builtin::to_scene(name),
+        _ => scene::load(path, monitor),
     }
-    scene::load(path, monitor)
 }
 
 /// Loads a scene and makes a renderer of it; the milliseconds are those of the loading.
-pub fn make_renderer(name: &str, options: &RendererOptions, interrupt: &Interrupt) -> Result<(Renderer, f64)> {
+pub fn make_renderer(name: &Path, options: &RendererOptions, interrupt: &Interrupt) -> Result<(Renderer, f64)> {
     let (renderer, load_ms, warnings) = with_bar(interrupt, |monitor| {
         let started = Instant::now();
         let scene = load(name, monitor)?;

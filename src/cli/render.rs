@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! `rarefy render`.
 
-use std::path::PathBuf;
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
 
 use rarefy::analysis::layers::{self, Layer};
 use rarefy::analysis::report;
@@ -12,7 +13,8 @@ use rarefy::{Error, Result};
 
 use super::args::RenderArgs;
 use super::interrupt::Interrupt;
-use super::output::{check_json_writable, check_writable, say, warn_all, write_json};
+use super::output::{say, warn_all, write_json};
+use super::outputs::Outputs;
 use super::progress::{make_renderer, watched};
 
 /// Draws one frame; writes the picture, the layers and the statistics.
@@ -21,7 +23,7 @@ pub fn run(args: &RenderArgs, interrupt: &Interrupt) -> Result<()> {
     let options = args.draw.render_options(mode)?;
     let layers = args.layer.iter().map(|text| parse_layer(text)).collect::<Result<Vec<_>>>()?;
     let mut keep = Keep::default();
-    for (layer, path) in &layers {
+    for (layer, _) in &layers {
         if mode == Mode::Full && layer.is_adaptive_only() {
             return Err(Error::argument(
                 "--layer",
@@ -29,10 +31,13 @@ pub fn run(args: &RenderArgs, interrupt: &Interrupt) -> Result<()> {
             ));
         }
         keep = keep.and(layer.needs());
-        check_writable(path)?;
     }
-    check_writable(&args.output)?;
-    check_json_writable(args.draw.json.as_deref())?;
+    let mut outputs = Outputs::of_scene(&args.draw.scene, Path::new(&args.draw.profile));
+    outputs.picture("-o", &args.output)?;
+    for (_, path) in &layers {
+        outputs.picture("--layer", path)?;
+    }
+    outputs.json(args.draw.json.as_deref())?;
 
     let (mut renderer, load_ms) = make_renderer(&args.draw.scene, &args.draw.renderer_options()?, interrupt)?;
     let notices = renderer.notices().len();
@@ -72,10 +77,24 @@ pub fn run(args: &RenderArgs, interrupt: &Interrupt) -> Result<()> {
     }
 }
 
-fn parse_layer(text: &str) -> Result<(Layer, PathBuf)> {
-    let (name, path) = text
-        .split_once('=')
-        .filter(|(_, path)| !path.is_empty())
-        .ok_or_else(|| Error::argument("--layer", format!("`{text}` is not NAME=FILE.png")))?;
-    Ok((name.parse()?, PathBuf::from(path)))
+fn parse_layer(text: &OsStr) -> Result<(Layer, PathBuf)> {
+    let (name, path) = split_at_equals(text)
+        .filter(|(_, path)| !path.as_os_str().is_empty())
+        .ok_or_else(|| Error::argument("--layer", format!("`{}` is not NAME=FILE.png", text.display())))?;
+    Ok((name.parse()?, path))
+}
+
+/// What stands before and after the first `=`; names of files need not be UTF-8.
+#[cfg(unix)]
+fn split_at_equals(text: &OsStr) -> Option<(String, PathBuf)> {
+    use std::os::unix::ffi::OsStrExt;
+    let bytes = text.as_bytes();
+    let at = bytes.iter().position(|&byte| byte == b'=')?;
+    Some((String::from_utf8_lossy(&bytes[..at]).into_owned(), OsStr::from_bytes(&bytes[at + 1..]).into()))
+}
+
+#[cfg(not(unix))]
+fn split_at_equals(text: &OsStr) -> Option<(String, PathBuf)> {
+    let (name, path) = text.to_str()?.split_once('=')?;
+    Some((name.to_owned(), path.into()))
 }

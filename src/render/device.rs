@@ -37,6 +37,8 @@ impl Device {
             Ok(opened)
         };
         match tested() {
+            // A compiler that Ctrl-C ended, for one, is no reason to draw elsewhere.
+            Err(_) if monitor.check().is_err() => Err(Error::Cancelled),
             Ok(Some(backend)) => Ok(Device::OpenCl(Box::new(backend))),
             Ok(None) => Ok(twin()),
             // No device, or one that a quick self-test found wanting.
@@ -73,6 +75,7 @@ impl Device {
             open_again(device, monitor)?;
         }
         let lost = match work(device) {
+            Err(_) if monitor.check().is_err() => return Err(Error::Cancelled),
             Err(error) if codes::is_loss(&error) => error,
             done => return done,
         };

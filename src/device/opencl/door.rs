@@ -3,6 +3,7 @@
 
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
 
 use opencl3::command_queue::{CL_QUEUE_PROFILING_ENABLE, create_command_queue, finish};
 use opencl3::context::context::create_context;
@@ -18,6 +19,9 @@ use super::timing::{Timing, Wait};
 use crate::device::profiles::{Choices, Profile};
 use crate::monitor::Monitor;
 use crate::{Error, Result, error::Setting};
+
+/// How long after a failed build a cancel may still arrive.
+const CANCEL_ARRIVES: Duration = Duration::from_millis(100);
 
 /// How to open a device.
 #[derive(Debug, Clone, Default)]
@@ -269,6 +273,20 @@ impl Door {
             return Err(codes::error(call, codes::INVALID_COMMAND_QUEUE));
         }
         state.check_monitor()
+    }
+
+    /// The error of a failed build, or [`Error::Cancelled`] if the work is to end. Ctrl-C in a terminal reaches the
+    /// compiler's own processes as well, and may do so before it reaches the token, which is therefore given a moment.
+    pub(super) fn unless_cancelled(&self, error: Error) -> Error {
+        let monitor = lock(&self.state).monitor.clone();
+        let failed = Instant::now();
+        loop {
+            match monitor.check() {
+                Err(cancelled) => return cancelled,
+                Ok(()) if failed.elapsed() >= CANCEL_ARRIVES => return error,
+                Ok(()) => std::thread::sleep(Duration::from_millis(5)),
+            }
+        }
     }
 
     /// Waits for everything enqueued. A launch that failed on the device is an error here.

@@ -100,7 +100,7 @@ impl Door {
                 }
             }
         }
-        let program = self.build_source(source, &c_options)?;
+        let program = self.build_source(source, &c_options).map_err(|error| self.unless_cancelled(error))?;
         if self.cache.is_on()
             && let Some(binary) = binary(&program)
         {

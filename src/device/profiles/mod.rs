@@ -7,6 +7,7 @@
 
 mod choices;
 
+use std::ffi::OsStr;
 use std::path::Path;
 
 use serde_json::{Map, Value};
@@ -138,8 +139,7 @@ impl Profile {
     /// Reads a profile file, or a dump of `rarefy devices --json` (its first device; another one with `#N` appended to
     /// the path, from 0).
     pub fn load(path: &Path) -> Result<Self> {
-        let text = path.to_string_lossy();
-        let (path, index) = match text.rsplit_once('#') {
+        let (path, index) = match path.to_str().and_then(|text| text.rsplit_once('#')) {
             Some((file, number)) if !path.exists() => match number.parse::<usize>() {
                 Ok(index) => (Path::new(file), index),
                 Err(_) => (path, 0),
@@ -162,16 +162,15 @@ impl Profile {
         Self::from_value(&place, value)
     }
 
-    /// What the user wrote after `--profile`: `none`, a name, or a file.
-    pub fn find(text: &str) -> Result<Option<Self>> {
-        if text == "none" {
-            Ok(None)
-        } else if Self::names().contains(&text) {
-            Self::named(text).map(Some)
-        } else if text.contains(['/', '.', '#', '\\']) || Path::new(text).exists() {
-            Self::load(Path::new(text)).map(Some)
-        } else {
-            Self::named(text).map(Some)
+    /// What a user means by a profile: `none`, the name of one that comes with the library, or a file.
+    pub fn find(name: &OsStr) -> Result<Option<Self>> {
+        match name.to_str() {
+            Some("none") => Ok(None),
+            Some(text) if Self::names().contains(&text) => Self::named(text).map(Some),
+            Some(text) if !text.contains(['/', '.', '#', '\\']) && !Path::new(text).exists() => {
+                Self::named(text).map(Some)
+            }
+            _ => Self::load(Path::new(name)).map(Some),
         }
     }
 
@@ -471,6 +470,6 @@ mod tests {
         }
         let message = Profile::named("adreno-42").unwrap_err().to_string();
         assert!(message.contains("adreno-420, adreno-530, mali-t880, embedded-floor"), "{message}");
-        assert!(Profile::find("none").unwrap().is_none());
+        assert!(Profile::find("none".as_ref()).unwrap().is_none());
     }
 }
