@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Every way in which Rarefy can fail. Each message names the place and, where there is one, the remedy.
 
-use std::path::PathBuf;
+use std::borrow::Cow;
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
 
 pub use crate::settings::Setting;
 
@@ -13,7 +15,7 @@ pub type Result<T> = std::result::Result<T, Error>;
 #[non_exhaustive]
 pub enum Error {
     /// A file could not be read or written.
-    #[error("{path}: {source}", path = path.display())]
+    #[error("{path}: {source}", path = shown(path))]
     Io {
         /// The file or folder.
         path: PathBuf,
@@ -21,7 +23,7 @@ pub enum Error {
         source: std::io::Error,
     },
     /// A text file (OBJ, MTL, `view.json`, profile) breaks its format at a known line.
-    #[error("{path}:{line}: {message}", path = path.display())]
+    #[error("{path}:{line}: {message}", path = shown(path), message = printable(message))]
     Syntax {
         /// The file.
         path: PathBuf,
@@ -31,7 +33,7 @@ pub enum Error {
         message: String,
     },
     /// A scene (or a part of it) is readable but makes no sense.
-    #[error("{place}: {message}")]
+    #[error("{place}: {message}", place = printable(place), message = printable(message))]
     InvalidScene {
         /// The file and key, or the scene's name.
         place: String,
@@ -39,7 +41,7 @@ pub enum Error {
         message: String,
     },
     /// A picture file could not be decoded or encoded.
-    #[error("{path}: {message}", path = path.display())]
+    #[error("{path}: {message}", path = shown(path), message = printable(message))]
     Image {
         /// The picture file.
         path: PathBuf,
@@ -79,7 +81,7 @@ pub enum Error {
         message: String,
     },
     /// Something needs more memory or larger sizes than a limit allows.
-    #[error("{what} needs {wanted}, the limit `{limit}` allows {allowed}{remedy}", remedy = if remedy.is_empty() { String::new() } else { format!(" ({remedy})") })]
+    #[error("{what} needs {wanted}, the limit `{limit}` allows {allowed}{remedy}", what = printable(what), remedy = if remedy.is_empty() { String::new() } else { format!(" ({remedy})") })]
     LimitExceeded {
         /// What asked for it.
         what: String,
@@ -156,6 +158,31 @@ pub enum Error {
     },
 }
 
+/// A text with everything escaped that would do something to a terminal or look like something else there: control
+/// characters, line ends, and marks that turn the direction of writing. Names in other people's files may have such.
+pub fn printable(text: &str) -> Cow<'_, str> {
+    let is_unfit = |c: char| {
+        c.is_control() || matches!(c, '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+    };
+    if !text.contains(is_unfit) {
+        return Cow::Borrowed(text);
+    }
+    let mut escaped = String::with_capacity(text.len() + 16);
+    for c in text.chars() {
+        if is_unfit(c) {
+            // Writing to a String cannot fail.
+            let _ = write!(escaped, "{}", c.escape_default());
+        } else {
+            escaped.push(c);
+        }
+    }
+    Cow::Owned(escaped)
+}
+
+fn shown(path: &Path) -> String {
+    printable(&path.to_string_lossy()).into_owned()
+}
+
 impl Error {
     /// An [`Error::Io`] at `path`.
     pub fn io(path: impl Into<PathBuf>, source: std::io::Error) -> Self {
@@ -180,5 +207,33 @@ impl Error {
     /// An [`Error::InvalidProfile`] at `place`.
     pub fn profile(place: impl Into<String>, message: impl ToString) -> Self {
         Error::InvalidProfile { place: place.into(), message: message.to_string() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn messages_have_one_line_and_no_control_characters() {
+        assert!(matches!(printable("Wände.png, 木"), Cow::Borrowed(_)));
+        assert_eq!(printable("a\u{1b}[2Jb\r\n\u{9b}c\u{202e}d\u{7f}"), r"a\u{1b}[2Jb\r\n\u{9b}c\u{202e}d\u{7f}");
+        let path = PathBuf::from("x\u{7}.obj");
+        for error in [
+            Error::scene("a\nb", "c\u{7}"),
+            Error::Syntax { path: path.clone(), line: 3, message: "d\u{7}".into() },
+            Error::Image { path: path.clone(), message: "d\ne".into() },
+            Error::io(path, std::io::ErrorKind::NotFound.into()),
+            Error::LimitExceeded {
+                what: "a\u{7}".into(),
+                limit: "b".into(),
+                wanted: "c".into(),
+                allowed: "d".into(),
+                remedy: String::new(),
+            },
+        ] {
+            let message = error.to_string();
+            assert!(!message.contains(char::is_control) && message.contains('\\'), "{message:?}");
+        }
     }
 }

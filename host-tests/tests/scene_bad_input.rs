@@ -106,10 +106,6 @@ fn numbers_that_are_none() {
         ("v 0 0 0 0 0", "`v` with 5 numbers"),
         ("v 0 0 1 0", "weight"),
         ("v 0 0 1 nan", "`nan` is not a finite number"),
-        ("vn 0 nan 0", "`nan` is not a finite number"),
-        ("vn 0 1", "2 numbers where 3 are needed"),
-        ("vt inf 0", "`inf` is not a finite number"),
-        ("vt", "0 numbers where 1"),
         ("v \u{e9} 0 0", "not a number"),
     ] {
         // Line 3 is wrong, and used by the face.
@@ -125,9 +121,6 @@ fn indices_out_of_range() {
         ("f 1 2 4", "corner `4`: index out of range: 3 vertices"),
         ("f 0 1 2", "index 0; OBJ files count from 1"),
         ("f 1 2 -4", "3 vertices (`v`) are defined above this line"),
-        ("f 1/1 2/2 3/2", "1 texture coordinates"),
-        ("f 1//1 2//1 3//-9223372036854775807", "1 normals"),
-        ("f 1//0 2//1 3//1", "index 0"),
         ("f 1 2 99999999999999999999999999", "out of range"),
         ("f 1 2 1.5", "whole number"),
         ("f 1 2 x", "whole number"),
@@ -350,43 +343,158 @@ fn a_missing_or_foreign_texture_is_flat_and_told() {
 }
 
 #[test]
-fn damaged_and_absurd_pictures_are_refused() {
+fn damaged_pictures_are_flat_and_told() {
     let mtl = "newmtl a\nmap_Kd a.png\n";
     let whole = png();
-    for length in [whole.len() - 20, 40, 20, 8] {
-        refused(load_texture(mtl, "a.png", &whole[..length]), &["a.png", "damaged or cut short", "export it again"]);
-    }
-    refused(load_texture(mtl, "a.png", b""), &["a.png", "file is empty"]);
-    refused(load_texture(mtl, "a.png", b"\xff\xd8\xff\xe0"), &["a.png", "damaged or cut short"]);
-    let sized = |width: u32, height: u32| {
-        let mut bytes = whole.clone();
-        bytes[16..20].copy_from_slice(&width.to_be_bytes());
-        bytes[20..24].copy_from_slice(&height.to_be_bytes());
-        bytes
+    let is_told = |bytes: &[u8], what: &str| {
+        let scene = load_texture(mtl, "a.png", bytes).unwrap();
+        warned(&scene, &["a.png: ", what, "the plain colour is drawn"]);
+        assert_eq!((scene.warnings().len(), scene.textures().len()), (1, 0));
+        assert_eq!(scene.notes().missing_textures, ["a.png"]);
     };
-    refused(load_texture(mtl, "a.png", &sized(1 << 31, 1)), &["a.png", "2147483648x1", "16384", "scale"]);
-    refused(load_texture(mtl, "a.png", &sized(16384, 16384)), &["a.png", "16384x16384", "1024 MiB", "256 MiB"]);
-    refused(load_texture(mtl, "a.png", &sized(0, 4)), &["a.png", "0x4"]);
+    for length in [whole.len() - 20, 40, 20, 8] {
+        is_told(&whole[..length], "damaged or cut short");
+    }
+    is_told(b"", "file is empty");
+    is_told(b"\xff\xd8\xff\xe0", "damaged or cut short");
+    is_told(&sized(&whole, 0, 4), "damaged or cut short");
+    // A header that promises more than the file has, within the limits.
+    is_told(&sized(&whole, 300, 300), "damaged or cut short");
+    // A JPEG's decoder makes grey of what is missing.
+    let mut jpeg = Vec::new();
+    let noise = |x: u32, y: u32| image::Rgb([x * 37 + y * 91, x * 11, y * 53].map(|v| v as u8));
+    image::RgbImage::from_fn(64, 64, noise)
+        .write_to(&mut std::io::Cursor::new(&mut jpeg), image::ImageFormat::Jpeg)
+        .unwrap();
+    for length in [jpeg.len() - 1, jpeg.len() - 2, jpeg.len() / 2] {
+        is_told(&jpeg[..length], "damaged or cut short");
+    }
+    // A preview in the header has an end of its own; what follows the end is no matter.
+    let preview = [&jpeg[..2], b"\xff\xe1\x00\x06", b"\xff\xd8\xff\xd9", &jpeg[2..], b"more"].concat();
+    assert_eq!(load_texture(mtl, "a.png", &preview).unwrap().textures().len(), 1);
+    is_told(&preview[..preview.len() / 2], "damaged or cut short");
+}
+
+/// A PNG with another size in its header.
+fn sized(png: &[u8], width: u32, height: u32) -> Vec<u8> {
+    let mut bytes = png.to_vec();
+    bytes[16..20].copy_from_slice(&width.to_be_bytes());
+    bytes[20..24].copy_from_slice(&height.to_be_bytes());
+    bytes
+}
+
+#[test]
+fn absurd_pictures_are_refused() {
+    let mtl = "newmtl a\nmap_Kd a.png\n";
+    let sized = |width, height| load_texture(mtl, "a.png", &sized(&png(), width, height));
+    refused(sized(1 << 31, 1), &["a.png", "2147483648x1", "16384", "scale"]);
+    refused(sized(16384, 16384), &["a.png", "16384x16384", "1024 MiB", "256 MiB"]);
     let mut wide = Vec::new();
     let picture = image::GrayImage::new(16385, 1);
     picture.write_to(&mut std::io::Cursor::new(&mut wide), image::ImageFormat::Jpeg).unwrap();
     refused(load_texture(mtl, "a.png", &wide), &["a.png", "16385x1", "16384"]);
-    // A header that promises more than the file has, within the limits.
-    refused(load_texture(mtl, "a.png", &sized(300, 300)), &["a.png", "damaged or cut short"]);
 }
 
 #[test]
-fn a_broken_mtl_names_its_line() {
-    let obj = format!("mtllib m.mtl\n{TRIANGLE}");
-    let with = |mtl: &[u8]| load(&[("scene.obj", obj.as_bytes()), ("m.mtl", mtl), ("view.json", VIEW.as_bytes())]);
-    refused(with(b"newmtl a\n\nKd 1 red 1\n"), &["m.mtl:3: ", "`Kd`", "`red` is not a number"]);
-    refused(with(b"newmtl a\nNi inf\n"), &["m.mtl:2: ", "not a finite number"]);
-    refused(with(b"\xff\xfen\0e\0w\0"), &["m.mtl", "UTF-16"]);
-    refused(with(b""), &["m.mtl", "empty"]);
+fn every_kind_of_picture_gives_its_texels() {
+    use image::DynamicImage;
+    let texels = |picture: DynamicImage, format| {
+        let mut bytes = Vec::new();
+        picture.write_to(&mut std::io::Cursor::new(&mut bytes), format).unwrap();
+        load_texture("newmtl a\nmap_Kd a\n", "a", &bytes).unwrap().textures()[0].texels.clone()
+    };
+    let rgba =
+        image::RgbaImage::from_fn(5, 3, |x, y| image::Rgba([x * 50, y * 90, x * y * 9, 255 - x].map(|v| v as u8)));
+    let rgba = DynamicImage::from(rgba);
+    for kind in [
+        rgba.clone(),
+        rgba.to_rgb8().into(),
+        rgba.to_luma8().into(),
+        rgba.to_luma_alpha8().into(),
+        rgba.to_rgb16().into(),
+        rgba.to_rgba16().into(),
+        rgba.to_luma16().into(),
+        rgba.to_luma_alpha16().into(),
+    ] {
+        let expected: Vec<u32> = kind.to_rgba8().pixels().map(|p| u32::from_le_bytes(p.0)).collect();
+        assert_eq!(texels(kind.clone(), image::ImageFormat::Png), expected, "{:?}", kind.color());
+    }
+    let grey =
+        texels(DynamicImage::from(image::GrayImage::from_pixel(3, 2, image::Luma([77]))), image::ImageFormat::Jpeg);
+    assert_eq!(grey, [0xff4d_4d4d; 6]);
+}
+
+#[test]
+fn what_is_wrong_in_an_mtl_is_left_out_and_told() {
+    let obj = format!("mtllib m.mtl\nusemtl a\n{TRIANGLE}");
+    let with =
+        |mtl: &[u8]| load(&[("scene.obj", obj.as_bytes()), ("m.mtl", mtl), ("view.json", VIEW.as_bytes())]).unwrap();
+    let kd = |scene: &Scene| scene.materials()[scene.objects()[0].material as usize].diffuse;
+    let scene = with(b"newmtl a\n\nKd 1 red 1\nKs 0 0 0\n");
+    warned(&scene, &["m.mtl:3: ", "`Kd`", "`red` is not a number", "left out"]);
+    warned(&with(b"newmtl a\nNi inf\n"), &["m.mtl:2: ", "not a finite number"]);
+    warned(&with(b"newmtl\nKd 1 0 0\nnewmtl a\n"), &["m.mtl:1: ", "`newmtl` without a name"]);
+    for (mtl, why) in [(&b"\xff\xfen\0e\0w\0"[..], "UTF-16"), (b"", "file is empty"), (b"\0\0\0\0", "not a text file")]
+    {
+        let scene = with(mtl);
+        warned(&scene, &["m.mtl", why, "its materials are drawn light grey"]);
+        assert_eq!(kd(&scene), Vec3::splat(0.7));
+    }
     // Values that exporters write.
-    let scene = with(b"newmtl a\r\nKd 2 1 1\r\nNi 0.001\r\nNs -5\r\n").unwrap();
+    let scene = with(b"newmtl a\r\nKd 2 1 1\r\nNi 0.001\r\nNs -5\r\nillum 2.0\r\n");
     warned(&scene, &["m.mtl:2", "limited to 0 .. 1"]);
     warned(&scene, &["m.mtl:4", "`Ns -5` is limited"]);
+    warned(&scene, &["m.mtl:5", "`illum 2.0` is taken for 2"]);
+    assert_eq!(scene.warnings().len(), 3, "{:?}", scene.warnings());
+}
+
+#[test]
+fn normals_and_texture_coordinates_that_are_none_are_missing() {
+    // Corner 2 has the bad one, whether the entry or the index is bad.
+    for (vt, vn, face, warning) in [
+        ("nan nan", "0 1 0", "f 1/1/1 2/2/2 3/1/1", "scene.obj:6: 1 texture coordinates (`vt`)"),
+        ("-nan(ind) 0", "0 1 0", "f 1/1/1 2/2/2 3/1/1", "scene.obj:6: 1 texture coordinates (`vt`)"),
+        ("", "0 1 0", "f 1/1/1 2/2/2 3/1/1", "scene.obj:6: 1 texture coordinates (`vt`)"),
+        ("1e999 0", "0 1 0", "f 1/1/1 2/2/2 3/1/1", "scene.obj:6: 1 texture coordinates (`vt`)"),
+        ("1e30 0", "0 1 0", "f 1/1/1 2/2/2 3/1/1", "scene.obj:6: 1 texture coordinates (`vt`)"),
+        (".5 .5", "0 nan 0", "f 1/1/1 2/2/2 3/1/1", "scene.obj:7: 1 normals (`vn`)"),
+        (".5 .5", "0 1e39 0", "f 1/1/1 2/2/2 3/1/1", "scene.obj:7: 1 normals (`vn`)"),
+        (".5 .5", "0 1", "f 1/1/1 2/2/2 3/1/1", "scene.obj:7: 1 normals (`vn`)"),
+        (".5 .5", "x y z", "f 1/1/1 2/2/2 3/1/1", "scene.obj:7: 1 normals (`vn`)"),
+        (".5 .5", "0 1 0", "f 1/1/1 2/2/9 3/1/1", "scene.obj:8: 1 indices of faces"),
+        (".5 .5", "0 1 0", "f 1/1/1 2/9/2 3/1/1", "scene.obj:8: 1 indices of faces"),
+        (".5 .5", "0 1 0", "f 1/1/1 2/0/-9223372036854775807 3/1/1", "scene.obj:8: 2 indices of faces"),
+        (".5 .5", "0 1 0", "f 1/1/1 2/a/b 3/1/1", "scene.obj:8: 2 indices of faces"),
+    ] {
+        let text = format!("v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 1 1\nvn 0 1 0\nvt {vt}\nvn {vn}\n{face}\n");
+        let scene = load_obj(text).unwrap();
+        warned(&scene, &[warning]);
+        assert_eq!(scene.warnings().len(), 1);
+        let (normals, texcoords) = (scene.corner_normals()[0].map(unpack_normal), scene.corner_texcoords()[0]);
+        assert_eq!((normals[0], texcoords[0]), (Vec3::Y, Vec2::ONE));
+        let bad_vt = warning.contains("`vt`)") || face.contains("/9/") || face.contains("/0/") || face.contains("/a/");
+        assert_eq!(texcoords[1], if bad_vt { Vec2::ZERO } else { Vec2::splat(0.5) }, "{face} {vt}");
+        let bad_vn = warning.contains("`vn`)") || face.contains("/9 ") || face.contains("-9") || face.contains("/b");
+        assert_eq!(normals[1], if bad_vn { Vec3::Z } else { Vec3::Y }, "{face} {vn}");
+    }
+}
+
+#[test]
+fn texture_coordinates_far_from_0_lose_nothing() {
+    let quad = |far: f64, s: f64| {
+        let vt = |x: f64, y: f64| format!("vt {} {}\n", far + x, y - far);
+        let corners = vt(0.25, 0.0) + &vt(0.25 + s, 0.0) + &vt(0.25 + s, 0.75) + &vt(0.25, 0.75);
+        let text = format!("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n{corners}f 1/1 2/2 3/3 4/4\n");
+        load_obj(text).unwrap().corner_texcoords().to_vec()
+    };
+    let near = quad(0.0, 2.5);
+    assert_eq!(near[0], [Vec2::new(0.25, 0.0), Vec2::new(2.75, 0.0), Vec2::new(2.75, 0.75)]);
+    // What is near stays as it is, bit for bit.
+    assert_eq!(quad(40.0, 2.5)[0][1], Vec2::new(42.75, -40.0));
+    for far in [100.0, 1.0e5, 1.0e6, 1.0e7, 123_456_789.0] {
+        assert_eq!(quad(far, 2.5), near, "{far}");
+    }
+    assert_ne!(quad(100.0, 2.4), near);
 }
 
 #[test]

@@ -3,8 +3,11 @@
 //!
 //! The doctor reads a finished [`Scene`], so it serves built-in scenes as well as loaded ones.
 
+use std::borrow::Cow;
+
 use super::import::fit::Extents;
 use super::{Material, Scene};
+use crate::error::printable;
 use crate::math::{cross, dot, unpack_normal};
 
 /// How much a finding matters.
@@ -51,6 +54,11 @@ pub fn examine(scene: &Scene) -> Vec<Finding> {
     triangles(scene, &mut tell);
     extent(scene, &mut tell);
     winding(scene, &mut tell);
+    for finding in &mut findings {
+        if let Cow::Owned(escaped) = printable(&finding.message) {
+            finding.message = escaped;
+        }
+    }
     findings.sort_by_key(|f| std::cmp::Reverse(f.severity));
     findings
 }

@@ -4,11 +4,13 @@
 use std::collections::HashMap;
 use std::path::Path;
 
-use glam::{Vec2, Vec3};
+use glam::{DVec2, Vec2, Vec3};
 
 use super::locate;
-use super::obj::{MISSING, ObjFile};
-use super::triangulate::{self, Split};
+use super::obj::{self, FAR_TEXCOORD, MISSING, ObjFile};
+use super::options::reserve;
+use super::source::Source;
+use super::triangulate::{self, Split, Work};
 use crate::math::pack_normal;
 use crate::monitor::Monitor;
 use crate::scene::{MAX_COORDINATE, MAX_TRIANGLES, Object, check};
@@ -48,8 +50,8 @@ pub(super) struct Geometry {
 }
 
 /// What happened to faces, for the warnings.
-struct Faces {
-    tests_left: u64,
+struct Faces<'a> {
+    work: Work<'a>,
     polygons_approximate: usize,
     first_approximate: Option<String>,
     polygons_degenerate: usize,
@@ -69,7 +71,13 @@ pub(super) struct FileMaterials<'a> {
 const FACES_AT_ONCE: usize = 4096;
 
 /// Makes the arrays.
-pub(super) fn assemble(path: &Path, file: ObjFile, materials: &FileMaterials, monitor: &Monitor) -> Result<Geometry> {
+pub(super) fn assemble(
+    source: &Source,
+    path: &Path,
+    file: ObjFile,
+    materials: &FileMaterials,
+    monitor: &Monitor,
+) -> Result<Geometry> {
     let mut geometry = Geometry::default();
     let total: usize = file.models.iter().map(triangles_of).sum();
     let vertices: usize = file.models.iter().map(|m| m.mesh.positions.len() / 3).sum();
@@ -82,20 +90,17 @@ pub(super) fn assemble(path: &Path, file: ObjFile, materials: &FileMaterials, mo
             remedy: "split the scene".into(),
         });
     }
-    geometry.positions.reserve_exact(vertices);
-    geometry.triangles.reserve_exact(total);
-    geometry.corner_normals.reserve_exact(total);
-    geometry.corner_texcoords.reserve_exact(total);
-    geometry.triangle_objects.reserve_exact(total);
-    geometry.corners_without_normal.reserve_exact(total);
+    reserve(&mut geometry.positions, vertices, path)?;
+    reserve(&mut geometry.triangles, total, path)?;
+    reserve(&mut geometry.corner_normals, total, path)?;
+    reserve(&mut geometry.corner_texcoords, total, path)?;
+    reserve(&mut geometry.triangle_objects, total, path)?;
+    reserve(&mut geometry.corners_without_normal, total, path)?;
 
     let mut objects: HashMap<(String, u32), u32> = HashMap::new();
-    let mut faces = Faces {
-        tests_left: triangulate::MAX_TESTS,
-        polygons_approximate: 0,
-        first_approximate: None,
-        polygons_degenerate: 0,
-    };
+    let mut shifts: Vec<DVec2> = Vec::new();
+    let mut faces =
+        Faces { work: Work::new(monitor), polygons_approximate: 0, first_approximate: None, polygons_degenerate: 0 };
     let mut welder = Welder::default();
     let mut models = file.models.into_iter().peekable();
     while let Some(model) = models.next() {
@@ -105,7 +110,7 @@ pub(super) fn assemble(path: &Path, file: ObjFile, materials: &FileMaterials, mo
             continue;
         }
         let mesh = model.mesh;
-        check_numbers(path, &mesh)?;
+        check_numbers(source, path, &mesh)?;
         let material = mesh.material_id.map_or(materials.default, |id| materials.of[id]);
         let map = mesh.material_id.map_or(TexcoordMap::default(), |id| materials.maps[id]);
         let goes_on = models.peek().is_some_and(|next| next.name == model.name);
@@ -117,7 +122,11 @@ pub(super) fn assemble(path: &Path, file: ObjFile, materials: &FileMaterials, mo
             geometry.without_texcoords.push(0);
             (geometry.objects.len() - 1) as u32
         });
-        let shape = Shape { mesh: &mesh, indices: &indices, object, map };
+        if shifts.len() < geometry.objects.len() {
+            shifts.push(whole_repeats(&file.texcoords, &mesh, map));
+        }
+        let shift = shifts[object as usize];
+        let shape = Shape { mesh: &mesh, texcoords: &file.texcoords, indices: &indices, object, map, shift };
         add_faces(&mut geometry, &mut faces, &shape, monitor)?;
     }
     let at = path.display();
@@ -154,16 +163,13 @@ fn triangles_of(model: &tobj::Model) -> usize {
 }
 
 /// Refuses numbers that are not finite or too large; the line is looked up only then.
-fn check_numbers(path: &Path, mesh: &tobj::Mesh) -> Result<()> {
+fn check_numbers(source: &Source, path: &Path, mesh: &tobj::Mesh) -> Result<()> {
     let fine = |v: &f32| v.abs() <= MAX_COORDINATE;
     let fine_or_missing = |v: &f32| fine(v) || *v == MISSING;
-    if mesh.positions.iter().all(fine)
-        && mesh.texcoords.iter().all(fine_or_missing)
-        && mesh.normals.iter().all(fine_or_missing)
-    {
+    if mesh.positions.iter().all(fine) && mesh.normals.iter().all(fine_or_missing) {
         return Ok(());
     }
-    Err(locate::bad_number(path).unwrap_or_else(|| {
+    Err(locate::bad_number(source, path).unwrap_or_else(|| {
         Error::scene(path.display().to_string(), format!("a coordinate is not finite or beyond {MAX_COORDINATE:e}"))
     }))
 }
@@ -212,8 +218,20 @@ struct Shape<'a> {
     mesh: &'a tobj::Mesh,
     /// Where the mesh's vertices lie in the scene.
     indices: &'a [u32],
+    /// The file's.
+    texcoords: &'a [DVec2],
     object: u32,
     map: TexcoordMap,
+    /// Whole repetitions of the texture that are taken off its coordinates.
+    shift: DVec2,
+}
+
+/// How many whole repetitions of the texture to take off an object's texture coordinates: those that its first corner lies
+/// away from 0, if that is far. Single precision would make rags of textures there; an object's corners stay together.
+fn whole_repeats(all: &[DVec2], mesh: &tobj::Mesh, map: TexcoordMap) -> DVec2 {
+    let first = mesh.texcoord_indices.iter().find_map(|&i| obj::texcoord(all, mesh, i));
+    let first = first.map_or(DVec2::ZERO, |t| t * map.scale.as_dvec2() + map.offset.as_dvec2());
+    if first.abs().max_element() < FAR_TEXCOORD { DVec2::ZERO } else { first.floor() }
 }
 
 fn add_faces(g: &mut Geometry, faces: &mut Faces, shape: &Shape, monitor: &Monitor) -> Result<()> {
@@ -234,7 +252,7 @@ fn add_faces(g: &mut Geometry, faces: &mut Faces, shape: &Shape, monitor: &Monit
             corners.clear();
             corners.extend(vertices.iter().map(|&v| g.positions[indices[v as usize] as usize]));
             split.clear();
-            match triangulate::split(&corners, &mut faces.tests_left, &mut split) {
+            match triangulate::split(&corners, &mut faces.work, &mut split)? {
                 Split::Exact => {}
                 Split::Degenerate => faces.polygons_degenerate += 1,
                 Split::Approximate => {
@@ -253,7 +271,7 @@ fn add_faces(g: &mut Geometry, faces: &mut Faces, shape: &Shape, monitor: &Monit
 
 /// Adds one triangle, unless it has no area. `at`: its corners' places in the mesh's index lists.
 fn add_triangle(g: &mut Geometry, shape: &Shape, at: [usize; 3]) {
-    let &Shape { mesh, indices, object, map } = shape;
+    let &Shape { mesh, indices, texcoords: all, object, map, shift } = shape;
     let triangle = at.map(|c| indices[mesh.indices[c] as usize]);
     if !check::has_area(triangle.map(|v| g.positions[v as usize])) {
         g.dropped += 1;
@@ -270,13 +288,10 @@ fn add_triangle(g: &mut Geometry, shape: &Shape, at: [usize; 3]) {
             Some(n) if n.x != MISSING && n.abs().max_element() > 1.0e-20 => normals[k] = pack_normal(n),
             _ => without |= 1 << k,
         }
-        let texcoord = mesh.texcoord_indices.get(at[k]).map(|&i| {
-            let i = i as usize * 2;
-            Vec2::new(mesh.texcoords[i], mesh.texcoords[i + 1])
-        });
-        match texcoord {
-            Some(t) if t.x != MISSING => texcoords[k] = t * map.scale + map.offset,
-            _ => lacks_texcoord = true,
+        match mesh.texcoord_indices.get(at[k]).and_then(|&i| obj::texcoord(all, mesh, i)) {
+            Some(t) if shift == DVec2::ZERO => texcoords[k] = t.as_vec2() * map.scale + map.offset,
+            Some(t) => texcoords[k] = (t * map.scale.as_dvec2() + map.offset.as_dvec2() - shift).as_vec2(),
+            None => lacks_texcoord = true,
         }
     }
     g.triangles.push(triangle);

@@ -7,21 +7,24 @@
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 
-use crate::files::{self, InputFile};
+use super::source::{Input, Source};
 use crate::{Error, Result};
 
 /// Longest logical line: far above any real polygon, far below what would fill the memory.
 const MAX_LINE_BYTES: usize = 64 << 20;
 
-/// Largest OBJ or MTL file: a model of ten million triangles has half of it.
-const MAX_FILE_BYTES: u64 = 4 << 30;
+/// Largest OBJ file: a model of ten million triangles has half of it.
+pub(super) const MAX_OBJ_BYTES: u64 = 4 << 30;
+
+/// Largest MTL file: half a million materials.
+pub(super) const MAX_MTL_BYTES: u64 = 64 << 20;
 
 /// How much of a file is looked at to tell text from other things.
 const PROBE_BYTES: usize = 64 << 10;
 
 /// A file that yields logical lines with the number of the physical line that each begins at.
 pub(super) struct LogicalLines {
-    reader: BufReader<InputFile>,
+    reader: BufReader<Input>,
     path: PathBuf,
     /// The bytes of the current logical line.
     line: Vec<u8>,
@@ -34,9 +37,9 @@ pub(super) struct LogicalLines {
 }
 
 impl LogicalLines {
-    /// Opens `path`; an empty, UTF-16 or binary file is an error here.
-    pub(super) fn open(path: &Path) -> Result<Self> {
-        let file = files::open(path, MAX_FILE_BYTES)?;
+    /// Opens a file of at most `max_bytes`; an empty, UTF-16 or binary one is an error here.
+    pub(super) fn open(source: &Source, path: &Path, max_bytes: u64) -> Result<Self> {
+        let file = source.open(path, max_bytes)?;
         let bytes_total = file.length();
         let mut reader = BufReader::with_capacity(PROBE_BYTES, file);
         let probe = reader.fill_buf().map_err(|e| Error::io(path, e))?;
@@ -125,8 +128,8 @@ impl LogicalLines {
 }
 
 /// Reads a whole text file of at most `max_bytes`.
-pub(super) fn read_text(path: &Path, max_bytes: u64) -> Result<String> {
-    let data = files::read(path, max_bytes)?;
+pub(super) fn read_text(source: &Source, path: &Path, max_bytes: u64) -> Result<String> {
+    let data = source.read(path, max_bytes)?;
     check_is_text(path, &data)?;
     let data = data.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&data);
     match std::str::from_utf8(data) {
@@ -158,9 +161,14 @@ fn check_is_text(path: &Path, probe: &[u8]) -> Result<()> {
     Ok(())
 }
 
-/// The text of a name: invalid UTF-8 becomes replacement characters.
+/// The text of a name. What is not valid UTF-8 is read as Latin-1, each byte a character: the commonest other encoding,
+/// and one that gives the bytes of a file's name back.
 pub(super) fn name_text(bytes: &[u8]) -> String {
-    String::from_utf8_lossy(bytes.trim_ascii()).into_owned()
+    let bytes = bytes.trim_ascii();
+    match std::str::from_utf8(bytes) {
+        Ok(text) => text.to_owned(),
+        Err(_) => bytes.iter().map(|&b| char::from(b)).collect(),
+    }
 }
 
 /// Splits a line into its keyword and the rest.
@@ -191,7 +199,7 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("x.obj");
         std::fs::write(&path, bytes).unwrap();
-        let mut lines = LogicalLines::open(&path)?;
+        let mut lines = LogicalLines::open(&Source::Disk { confined_to: None }, &path, MAX_OBJ_BYTES)?;
         let mut all = Vec::new();
         while let Some((number, line)) = lines.next_line()? {
             all.push((number, name_text(line)));

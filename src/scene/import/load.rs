@@ -1,20 +1,25 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! From a folder or an OBJ file to a [`Scene`].
 
+use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 use glam::Vec3;
 
+use super::LoadOptions;
 use super::assemble::{self, Geometry, TexcoordMap};
+use super::find::{Finder, Found, without_comment_and_quotes};
 use super::fit::{Extents, fitted_camera, fitted_light};
 use super::mtl::{self, MtlMaterial};
 use super::normals;
 use super::obj::{self, ObjFile};
+use super::source::{FileSource, Source};
 use super::texture::{Role, Textures};
 use super::view::{self, ViewFile};
+use crate::error::printable;
 use crate::monitor::Monitor;
-use crate::scene::{LoadNotes, Material, Scene, SceneParts, Surface, View};
+use crate::scene::{LoadNotes, Material, Scene, SceneParts, Surface, Texture, View};
 use crate::{Error, Result};
 
 /// Loads the scene at `path`: a folder with `scene.obj` (and `view.json`), or an OBJ file (`view.json` beside it is
@@ -24,21 +29,57 @@ use crate::{Error, Result};
 ///
 /// # Errors
 /// Files that cannot be read or make no sense; each message names the file and, where there is one, line or key.
-/// What can be mended or left out is, with a sentence in [`Scene::warnings`]. [`Error::Cancelled`].
+/// What can be mended or left out is, with a sentence in [`Scene::warnings`]. [`Error::LimitExceeded`] for more than a
+/// budget of [`LoadOptions`] allows. [`Error::Cancelled`].
 pub fn load(path: &Path, monitor: &Monitor) -> Result<Scene> {
-    let Files { name, obj, view } = find_files(path)?;
+    load_with(path, &LoadOptions::default(), monitor)
+}
+
+/// As [`load`], with options.
+///
+/// # Errors
+/// As for [`load`].
+pub fn load_with(path: &Path, options: &LoadOptions, monitor: &Monitor) -> Result<Scene> {
+    let files = find_files(path)?;
+    let source = Source::disk(files.obj.parent().unwrap_or(Path::new("")), options)?;
+    load_files(files, &source, options, monitor)
+}
+
+/// Loads the scene `name` from files that are no files of the file system: the same scene as [`load`] makes of the same
+/// files. `name` is the OBJ file's, or that of a folder with `scene.obj`; `view.json` and what the files name is looked
+/// for beside it.
+///
+/// # Errors
+/// As for [`load`], and those of `files`.
+pub fn load_from(name: &str, files: &dyn FileSource, options: &LoadOptions, monitor: &Monitor) -> Result<Scene> {
+    let source = Source::caller(files);
+    let path = Path::new(name);
+    let obj = path.join("scene.obj");
+    let (obj, named_after) = if source.is_file(&obj)? { (obj, path) } else { (path.to_path_buf(), path) };
+    if !source.is_file(&obj)? {
+        let message = "no such file; a scene is an .obj file or a folder with scene.obj";
+        return Err(Error::scene(name, message));
+    }
+    let view = obj.with_file_name("view.json");
+    let view = source.is_file(&view)?.then_some(view);
+    let name = base_name(named_after).unwrap_or_else(|| "scene".into());
+    load_files(Files { name, obj, view }, &source, options, monitor)
+}
+
+fn load_files(files: Files, source: &Source, options: &LoadOptions, monitor: &Monitor) -> Result<Scene> {
+    let Files { name, obj, view } = files;
     // First the small files: a wrong key should not cost the time of a large mesh.
     let mut view_file = match &view {
-        Some(view) => view::read(view)?,
+        Some(view) => view::read(source, view)?,
         None => ViewFile::default(),
     };
     monitor.restart();
-    let file = obj::read(&obj, &monitor.part("reading geometry", 0.0, 0.6))?;
+    let file = obj::read(source, &obj, options, &monitor.part("reading geometry", 0.0, 0.6))?;
     let mut warnings = file.warnings.clone();
     let duplicate_names = file.reopened_groups.clone();
 
     let part = monitor.part("reading materials", 0.6, 0.8);
-    let palette = Palette::load(&obj, &file, &view_file, view.as_deref(), &mut warnings, &part)?;
+    let palette = Palette::load(source, &obj, &file, &view_file, view.as_deref(), options, &mut warnings, &part)?;
 
     let part = monitor.part("building triangles", 0.8, 0.9);
     let materials = assemble::FileMaterials {
@@ -46,7 +87,7 @@ pub fn load(path: &Path, monitor: &Monitor) -> Result<Scene> {
         maps: &palette.texcoord_maps,
         default: palette.default_material,
     };
-    let mut geometry = assemble::assemble(&obj, file, &materials, &part)?;
+    let mut geometry = assemble::assemble(source, &obj, file, &materials, &part)?;
     warnings.append(&mut geometry.warnings);
     if let Some(expected) = view_file.triangles
         && expected != (geometry.triangles.len() + geometry.dropped) as u64
@@ -63,13 +104,18 @@ pub fn load(path: &Path, monitor: &Monitor) -> Result<Scene> {
         triangles_without_texcoords: textured_without_texcoords(&geometry, &palette.materials),
         dropped_triangles: geometry.dropped,
         duplicate_names,
-        missing_textures: palette.textures.missing,
+        missing_textures: palette.missing_textures,
         extent_given: view_file.extent.is_some(),
     };
     drop(missing);
 
     let place = view.as_ref().map_or_else(|| format!("{} (no view.json)", obj.display()), |v| v.display().to_string());
     let view = make_view(&mut view_file, &geometry, &place, &mut warnings);
+    for warning in &mut warnings {
+        if let Cow::Owned(escaped) = printable(warning) {
+            *warning = escaped;
+        }
+    }
     monitor.check()?;
     part.tell(1.0);
     Scene::new(SceneParts {
@@ -81,7 +127,7 @@ pub fn load(path: &Path, monitor: &Monitor) -> Result<Scene> {
         triangle_objects: geometry.triangle_objects,
         objects: geometry.objects,
         materials: palette.materials,
-        textures: palette.textures.textures,
+        textures: palette.textures,
         view,
         warnings,
         notes,
@@ -129,7 +175,8 @@ fn base_name(path: &Path) -> Option<String> {
 /// The materials of a scene and what refers to them.
 struct Palette {
     materials: Vec<Material>,
-    textures: Textures,
+    textures: Vec<Texture>,
+    missing_textures: Vec<String>,
     /// By the OBJ file's material number.
     material_of: Vec<u32>,
     texcoord_maps: Vec<TexcoordMap>,
@@ -137,16 +184,20 @@ struct Palette {
 }
 
 impl Palette {
+    #[allow(clippy::too_many_arguments)] // each of them once
     fn load(
+        source: &Source,
         obj: &Path,
         file: &ObjFile,
         view: &ViewFile,
         view_path: Option<&Path>,
+        options: &LoadOptions,
         warnings: &mut Vec<String>,
         monitor: &Monitor,
     ) -> Result<Self> {
-        let defined = read_libraries(obj, file, warnings)?;
-        let mut textures = Textures::watched_by(monitor);
+        let mut finder = Finder::new(source, obj, monitor);
+        let defined = read_libraries(&mut finder, obj, file, warnings)?;
+        let mut textures = Textures::new(finder, options, monitor);
         let mut materials = Vec::with_capacity(defined.len() + 1);
         let mut maps = Vec::with_capacity(defined.len() + 1);
         let kinds = Kinds::new(view);
@@ -162,18 +213,30 @@ impl Palette {
                     .push(format!("material `{}`: map_d has other -s or -o than map_Kd; map_Kd's are used", m.name));
             }
         }
-        warnings.append(&mut textures.warnings);
+        warnings.append(&mut textures.take_warnings());
         let mut by_name: HashMap<String, u32> =
             materials.iter().enumerate().map(|(i, m): (_, &Material)| (m.name.clone(), i as u32)).collect();
+        let mut by_lower_case: HashMap<String, u32> = HashMap::new();
+        for (i, m) in materials.iter().enumerate() {
+            by_lower_case.entry(m.name.to_lowercase()).or_insert(i as u32);
+        }
         let default_material = materials.len() as u32;
         materials.push(Material::default());
         maps.push(TexcoordMap::default());
         // Materials that no file defines keep their names, so that objects stay apart and lists find them.
-        let mut unknown = Vec::new();
+        let (mut unknown, mut renamed) = (Vec::new(), Vec::new());
         for (name, line) in &file.materials {
+            if by_name.contains_key(name) {
+                continue;
+            }
+            let meant = without_comment_and_quotes(name);
+            let meant = by_name.get(meant).or_else(|| by_lower_case.get(&meant.to_lowercase())).copied();
             if name.is_empty() {
                 by_name.insert(String::new(), default_material);
-            } else if !by_name.contains_key(name) {
+            } else if let Some(meant) = meant {
+                by_name.insert(name.clone(), meant);
+                renamed.push((name, line, meant));
+            } else {
                 let m = MtlMaterial { name: name.clone(), ..Default::default() };
                 by_name.insert(name.clone(), materials.len() as u32);
                 materials.push(kinds.material(&m, Path::new(""), &mut textures, warnings)?);
@@ -181,8 +244,13 @@ impl Palette {
                 unknown.push((name, line));
             }
         }
+        let and_more = |count: usize| if count > 1 { format!(" and {} more", count - 1) } else { String::new() };
+        if let Some(&(name, line, meant)) = renamed.first() {
+            let (at, more, meant) = (obj.display(), and_more(renamed.len()), &materials[meant as usize].name);
+            warnings.push(format!("{at}:{line}: no MTL file defines material `{name}`{more}; `{meant}` is meant"));
+        }
         if let Some((name, line)) = unknown.first() {
-            let more = if unknown.len() > 1 { format!(" and {} more", unknown.len() - 1) } else { String::new() };
+            let more = and_more(unknown.len());
             let at = obj.display();
             warnings.push(format!("{at}:{line}: no MTL file defines material `{name}`{more}; drawn light grey"));
         }
@@ -191,39 +259,57 @@ impl Palette {
         }
         let material_of: Vec<u32> = file.materials.iter().map(|(name, _)| by_name[name]).collect();
         let texcoord_maps = material_of.iter().map(|&m| maps[m as usize]).collect();
-        Ok(Palette { materials, textures, material_of, texcoord_maps, default_material })
+        let (textures, missing_textures) = (textures.textures, textures.missing);
+        Ok(Palette { materials, textures, missing_textures, material_of, texcoord_maps, default_material })
     }
 }
 
 /// The materials of all MTL files, each with the folder that its textures are relative to.
-fn read_libraries(obj: &Path, file: &ObjFile, warnings: &mut Vec<String>) -> Result<Vec<(PathBuf, MtlMaterial)>> {
+fn read_libraries(
+    finder: &mut Finder,
+    obj: &Path,
+    file: &ObjFile,
+    warnings: &mut Vec<String>,
+) -> Result<Vec<(PathBuf, MtlMaterial)>> {
+    let source = finder.source();
     let folder = obj.parent().unwrap_or(Path::new(""));
     let mut read_paths = HashSet::new();
     let mut materials: Vec<(PathBuf, MtlMaterial)> = Vec::new();
     let mut places: HashMap<String, usize> = HashMap::new();
     for (argument, line) in &file.libraries {
-        // One name with spaces, or several names.
-        let whole = vec![argument.as_str()];
-        let found = |name: &str| {
-            let candidates = [folder.join(name), folder.join(name.replace('\\', "/"))];
-            candidates.into_iter().find(|p| !name.is_empty() && p.is_file())
-        };
-        let names = if found(argument).is_some() { whole } else { argument.split_whitespace().collect() };
-        let names = if names.iter().any(|n| found(n).is_some()) { names } else { vec![argument.as_str()] };
-        for name in names {
-            let Some(path) = found(name) else {
-                let at = obj.display();
-                warnings.push(format!("{at}:{line}: MTL file `{name}` not found; its materials are drawn light grey"));
-                continue;
+        for (name, found) in find_libraries(finder, folder, argument)? {
+            let at = obj.display();
+            let lacks = |why: &str| format!("{at}:{line}: MTL file `{name}` {why}; its materials are drawn light grey");
+            let path = match found {
+                Found::There(path) => path,
+                Found::Elsewhere(path) => {
+                    let taken = path.display();
+                    warnings.push(format!("{at}:{line}: MTL file `{name}` not found there; {taken} is used"));
+                    path
+                }
+                Found::Forbidden => {
+                    warnings.push(lacks("lies outside the scene's folder and may not be read"));
+                    continue;
+                }
+                Found::Nowhere => {
+                    warnings.push(lacks("not found"));
+                    continue;
+                }
             };
             if !read_paths.insert(path.clone()) {
                 continue;
             }
+            let mut read = Library { materials: Vec::new(), warnings: Vec::new() };
+            match mtl::read(source, &path, &mut read.warnings) {
+                Ok(materials) => read.materials = materials,
+                Err(e @ (Error::Cancelled | Error::LimitExceeded { .. })) => return Err(e),
+                Err(e) => read.warnings.push(format!("{e}; its materials are drawn light grey")),
+            }
             let textures = path.parent().unwrap_or(Path::new("")).to_path_buf();
-            for m in mtl::read(&path, warnings)? {
+            for m in read.materials {
                 match places.get(&m.name) {
                     Some(&i) => {
-                        warnings.push(format!(
+                        read.warnings.push(format!(
                             "{}: material `{}` is defined in another MTL file too; this one counts",
                             path.display(),
                             m.name
@@ -236,9 +322,52 @@ fn read_libraries(obj: &Path, file: &ObjFile, warnings: &mut Vec<String>) -> Res
                     }
                 }
             }
+            // The words of a file that is none of the scene's are not for those who see the messages.
+            if !read.warnings.is_empty() && source.is_outside(folder, &path) {
+                let (at, count) = (path.display(), read.warnings.len());
+                warnings
+                    .push(format!("{at}: {count} things are wrong; not told, for it lies outside the scene's folder"));
+            } else {
+                warnings.append(&mut read.warnings);
+            }
         }
     }
     Ok(materials)
+}
+
+/// What an MTL file gave.
+struct Library {
+    materials: Vec<MtlMaterial>,
+    warnings: Vec<String>,
+}
+
+/// The files that an `mtllib` line names: one name with spaces, or several names.
+fn find_libraries(finder: &mut Finder, folder: &Path, argument: &str) -> Result<Vec<(String, Found)>> {
+    let is_there = |found: &Found| matches!(found, Found::There(_) | Found::Elsewhere(_));
+    let whole = finder.find_as_written(folder, argument)?;
+    let words: Vec<&str> = argument.split_whitespace().collect();
+    if is_there(&whole) || words.len() < 2 {
+        let found = if is_there(&whole) { whole } else { finder.find(folder, argument)? };
+        return Ok(vec![(argument.to_owned(), found)]);
+    }
+    let mut any = false;
+    for word in &words {
+        any |= is_there(&finder.find_as_written(folder, word)?);
+    }
+    if !any {
+        let found = finder.find(folder, argument)?;
+        if is_there(&found) {
+            return Ok(vec![(argument.to_owned(), found)]);
+        }
+    }
+    let mut names = Vec::new();
+    for word in words {
+        names.push((word.to_owned(), finder.find(folder, word)?));
+    }
+    if !any && !names.iter().any(|(_, found)| is_there(found)) {
+        return Ok(vec![(argument.to_owned(), whole)]);
+    }
+    Ok(names)
 }
 
 /// The name lists of a view.

@@ -3,15 +3,16 @@
 
 use std::path::Path;
 
-use super::lines::{LogicalLines, keyword, without_comment, words};
+use super::lines::{LogicalLines, MAX_OBJ_BYTES, keyword, without_comment, words};
+use super::source::Source;
 use crate::Error;
 use crate::scene::MAX_COORDINATE;
 
 /// The first line of `v`, `vt` or `vn` whose numbers are not numbers, not finite or too large.
 ///
 /// `None`: there is no such line (or the file cannot be read any more).
-pub(super) fn bad_number(path: &Path) -> Option<Error> {
-    let mut lines = LogicalLines::open(path).ok()?;
+pub(super) fn bad_number(source: &Source, path: &Path) -> Option<Error> {
+    let mut lines = LogicalLines::open(source, path, MAX_OBJ_BYTES).ok()?;
     loop {
         let (number, line) = lines.next_line().ok()??;
         let (key, rest) = keyword(line);

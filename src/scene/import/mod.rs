@@ -2,6 +2,7 @@
 //! Scenes from files: OBJ, MTL, textures, `view.json`; triangulation, normals, fitted views.
 
 mod assemble;
+mod find;
 pub(super) mod fit;
 mod lines;
 mod load;
@@ -9,9 +10,13 @@ mod locate;
 mod mtl;
 pub(super) mod normals;
 mod obj;
+mod options;
+mod source;
 mod texture;
 mod triangulate;
 mod view;
 
-pub use load::load;
+pub use load::{load, load_from, load_with};
+pub use options::LoadOptions;
+pub use source::FileSource;
 pub(crate) use view::complete as complete_view;

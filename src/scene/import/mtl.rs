@@ -16,7 +16,8 @@ use std::path::Path;
 use glam::{Vec2, Vec3};
 
 use super::assemble::TexcoordMap;
-use super::lines::{LogicalLines, keyword, name_text, without_comment, words};
+use super::lines::{LogicalLines, MAX_MTL_BYTES, keyword, name_text, without_comment, words};
+use super::source::Source;
 use crate::{Error, Result};
 
 /// A `map_` line.
@@ -45,8 +46,8 @@ pub(super) struct MtlMaterial {
 }
 
 /// Reads the MTL file at `path`; appends sentences about what was passed over to `warnings`.
-pub(super) fn read(path: &Path, warnings: &mut Vec<String>) -> Result<Vec<MtlMaterial>> {
-    let checked = check(path, warnings)?;
+pub(super) fn read(source: &Source, path: &Path, warnings: &mut Vec<String>) -> Result<Vec<MtlMaterial>> {
+    let checked = check(source, path, warnings)?;
     let (materials, _) = tobj::load_mtl_buf(&mut checked.text.as_bytes())
         .map_err(|e| Error::scene(path.display().to_string(), format!("not a readable MTL file: {e}")))?;
     let mut read: Vec<MtlMaterial> = Vec::with_capacity(materials.len());
@@ -102,37 +103,44 @@ struct Checked {
     maps: Vec<Map>,
 }
 
-fn check(path: &Path, warnings: &mut Vec<String>) -> Result<Checked> {
-    let mut lines = LogicalLines::open(path)?;
+fn check(source: &Source, path: &Path, warnings: &mut Vec<String>) -> Result<Checked> {
+    let mut lines = LogicalLines::open(source, path, MAX_MTL_BYTES)?;
     let mut checked = Checked::default();
     while let Some((number, line)) = lines.next_line()? {
-        let syntax = |message: String| Error::Syntax { path: path.to_path_buf(), line: number, message };
+        // A value that makes no sense has what it would be without it to fall back on.
+        let at = path.display();
+        let mut left_out = |message: String| warnings.push(format!("{at}:{number}: {message}; left out"));
         let (key, rest) = keyword(line);
         let key = String::from_utf8_lossy(key).into_owned();
         let lower = key.to_ascii_lowercase();
         if lower == "newmtl" {
             let name = name_text(rest);
             if name.is_empty() {
-                return Err(syntax("`newmtl` without a name".into()));
+                warnings.push(format!("{at}:{number}: `newmtl` without a name; faces of `usemtl` without one get it"));
             }
             checked.text += &format!("newmtl {}\n", checked.names.len());
             checked.names.push((name, number));
             continue;
         }
-        let wrong = |message: String| syntax(format!("`{key}`: {message}"));
+        let mut wrong = |message: String| left_out(format!("`{key}`: {message}"));
         match key.as_str() {
             "Kd" | "Ks" | "Tf" => {
                 if let Some(first @ (b"spectral" | b"xyz")) = words(rest).next() {
                     let first = String::from_utf8_lossy(first);
-                    warnings
-                        .push(format!("{}:{number}: `{key} {first}` is not supported and left out", path.display()));
+                    wrong(format!("`{first}` is not supported"));
                     continue;
                 }
-                let values = numbers(rest).map_err(wrong)?;
-                let rgb = match values[..] {
-                    [grey] => [grey; 3],
-                    [r, g, b, ..] => [r, g, b],
-                    _ => return Err(wrong(format!("{} numbers; 3 are right", values.len()))),
+                let rgb = match numbers(rest).as_deref() {
+                    Ok([grey]) => [*grey; 3],
+                    Ok([r, g, b, ..]) => [*r, *g, *b],
+                    Ok(values) => {
+                        wrong(format!("{} numbers; 3 are right", values.len()));
+                        continue;
+                    }
+                    Err(message) => {
+                        wrong(message.clone());
+                        continue;
+                    }
                 };
                 if rgb.iter().any(|v| !(0.0..=1.0).contains(v)) {
                     warnings.push(format!("{}:{number}: `{key}` is limited to 0 .. 1", path.display()));
@@ -142,8 +150,14 @@ fn check(path: &Path, warnings: &mut Vec<String>) -> Result<Checked> {
             }
             "Ns" | "Ni" | "d" | "Tr" => {
                 let rest = rest.strip_prefix(b"-halo").unwrap_or(rest);
-                let values = numbers(rest).map_err(wrong)?;
-                let Some(&value) = values.first() else { return Err(wrong("a number is missing".into())) };
+                let first = numbers(rest).and_then(|v| v.first().copied().ok_or_else(|| "a number is missing".into()));
+                let value = match first {
+                    Ok(value) => value,
+                    Err(message) => {
+                        wrong(message);
+                        continue;
+                    }
+                };
                 let (low, high) = match key.as_str() {
                     "Ns" => (0.0, 1.0e6),
                     "Ni" => (1.0, 100.0),
@@ -151,24 +165,33 @@ fn check(path: &Path, warnings: &mut Vec<String>) -> Result<Checked> {
                 };
                 // Exporters write `Ni 0` or `Ni 0.001` for what does not refract.
                 if !(low..=high).contains(&value) && key != "Ni" {
-                    let at = path.display();
                     warnings.push(format!("{at}:{number}: `{key} {value}` is limited to {low} .. {high}"));
                 }
                 checked.text += &format!("{key} {}\n", value.clamp(low, high));
             }
             "illum" => {
-                let value = name_text(words(rest).next().unwrap_or_default());
-                match value.parse::<u8>() {
-                    Ok(value) if value <= 10 => checked.text += &format!("illum {value}\n"),
-                    _ => return Err(wrong(format!("`{value}` is not an illumination model; 0 to 10 are right"))),
+                let text = name_text(words(rest).next().unwrap_or_default());
+                match text.parse::<f32>() {
+                    Ok(value) if (0.0..=10.0).contains(&value) => {
+                        // Some write `2.0`.
+                        let whole = value as u8;
+                        if text.parse() != Ok(whole) {
+                            warnings.push(format!("{at}:{number}: `illum {text}` is taken for {whole}"));
+                        }
+                        checked.text += &format!("illum {whole}\n");
+                    }
+                    _ => wrong(format!("`{text}` is not an illumination model; 0 to 10 are right")),
                 }
             }
             _ if lower == "map_kd" || lower == "map_d" => {
                 let canonical = if lower == "map_kd" { "map_Kd" } else { "map_d" };
-                let (map, ignored) = parse_map(&name_text(rest)).map_err(wrong)?;
+                let (map, ignored) = parse_map(&name_text(rest));
+                if map.file.is_empty() {
+                    wrong("a file name is missing".into());
+                    continue;
+                }
                 if !ignored.is_empty() {
-                    let at = path.display();
-                    warnings.push(format!("{at}:{number}: `{key}` options {} are not supported", ignored.join(", ")));
+                    warnings.push(format!("{at}:{number}: `{key}` options not used: {}", ignored.join(", ")));
                 }
                 checked.text += &format!("{canonical} {}\n", checked.maps.len());
                 checked.maps.push(map);
@@ -193,8 +216,9 @@ fn numbers(rest: &[u8]) -> std::result::Result<Vec<f32>, String> {
         .collect()
 }
 
-/// Splits a map's arguments into options and file name (which may have spaces). Also names the options not applied.
-fn parse_map(text: &str) -> std::result::Result<(Map, Vec<String>), String> {
+/// Splits a map's arguments into options and file name (which may have spaces, or be missing). Also the options that are
+/// not applied, some with the reason.
+fn parse_map(text: &str) -> (Map, Vec<String>) {
     let mut rest = text.trim();
     let mut ignored = Vec::new();
     let mut texcoords = TexcoordMap::default();
@@ -219,14 +243,17 @@ fn parse_map(text: &str) -> std::result::Result<(Map, Vec<String>), String> {
             values.push((word, number));
             after = further.trim_start();
         }
-        let number = |i: usize, default: f32| match values.get(i) {
-            None => Ok(default),
-            Some((_, Some(v))) if v.abs() <= 1.0e6 => Ok(*v),
-            Some((word, _)) => Err(format!("option {option}: `{word}` is not a number in -1e6 .. 1e6")),
+        let mut number = |i: usize, default: f32| match values.get(i) {
+            None => default,
+            Some((_, Some(v))) if v.abs() <= 1.0e6 => *v,
+            Some((word, _)) => {
+                ignored.push(format!("{option} (`{word}` is not a number in -1e6 .. 1e6)"));
+                default
+            }
         };
         match option {
-            "-s" => texcoords.scale = Vec2::new(number(0, 1.0)?, number(1, 1.0)?),
-            "-o" => texcoords.offset = Vec2::new(number(0, 0.0)?, number(1, 0.0)?),
+            "-s" => texcoords.scale = Vec2::new(number(0, 1.0), number(1, 1.0)),
+            "-o" => texcoords.offset = Vec2::new(number(0, 0.0), number(1, 0.0)),
             // Without effect here, or asking for what is done anyway.
             "-blendu" | "-blendv" | "-texres" | "-boost" | "-imfchan" | "-bm" => {}
             "-clamp" if values.first().is_some_and(|(word, _)| *word == "off") => {}
@@ -234,10 +261,7 @@ fn parse_map(text: &str) -> std::result::Result<(Map, Vec<String>), String> {
         }
         rest = after;
     }
-    if rest.is_empty() {
-        return Err("a file name is missing".into());
-    }
-    Ok((Map { file: rest.to_string(), texcoords }, ignored))
+    (Map { file: rest.to_string(), texcoords }, ignored)
 }
 
 #[cfg(test)]
@@ -250,7 +274,7 @@ mod tests {
         let path = dir.path().join("m.mtl");
         std::fs::write(&path, text).unwrap();
         let mut warnings = Vec::new();
-        (read(&path, &mut warnings), warnings)
+        (read(&Source::Disk { confined_to: None }, &path, &mut warnings), warnings)
     }
 
     #[test]
@@ -275,26 +299,46 @@ mod tests {
 
     #[test]
     fn a_file_name_may_look_like_a_number_or_an_option() {
-        assert_eq!(parse_map("-s 2 3.png").unwrap().0.file, "3.png");
-        assert_eq!(parse_map("-o 1 2 3 4 5.png").unwrap().0.file, "4 5.png");
-        assert_eq!(parse_map("-odd.png").unwrap().0.file, "-odd.png");
-        assert_eq!(parse_map("-mm 0 1 x.png").unwrap().1, ["-mm"]);
-        assert!(parse_map("-s 1").is_err());
-        assert!(parse_map("-s nan 1 1 x.png").is_err());
+        let file = |text: &str| parse_map(text).0.file;
+        assert_eq!(file("-s 2 3.png"), "3.png");
+        assert_eq!(file("-o 1 2 3 4 5.png"), "4 5.png");
+        assert_eq!(file("-odd.png"), "-odd.png");
+        assert_eq!(parse_map("-mm 0 1 x.png").1, ["-mm"]);
+        assert_eq!(file("-s 1"), "");
+        let (map, ignored) = parse_map("-s nan 2 1 x.png");
+        assert_eq!((map.file.as_str(), map.texcoords.scale), ("x.png", Vec2::new(1.0, 2.0)));
+        assert_eq!(ignored, ["-s (`nan` is not a number in -1e6 .. 1e6)"]);
     }
 
     #[test]
-    fn wrong_values_are_named_with_their_line() {
+    fn wrong_values_are_left_out_and_named_with_their_line() {
+        let plain = MtlMaterial { name: "a".into(), ..MtlMaterial::default() };
         for (text, expected) in [
-            ("newmtl a\nKd 1 2\n", "m.mtl:2: `Kd`: 2 numbers"),
-            ("newmtl a\n\nNs nan\n", "m.mtl:3: `Ns`: `nan` is not a finite number"),
-            ("newmtl a\nillum 99\n", "m.mtl:2: `illum`"),
-            ("newmtl \n", "m.mtl:1: `newmtl` without a name"),
-            ("newmtl a\nmap_Kd\n", "m.mtl:2: `map_Kd`: a file name is missing"),
+            ("newmtl a\nKd 1 2\n", "m.mtl:2: `Kd`: 2 numbers; 3 are right; left out"),
+            ("newmtl a\n\nNs nan\n", "m.mtl:3: `Ns`: `nan` is not a finite number; left out"),
+            ("newmtl a\nNi\n", "m.mtl:2: `Ni`: a number is missing"),
+            ("newmtl a\nillum 99\n", "m.mtl:2: `illum`: `99` is not an illumination model"),
+            ("newmtl a\nillum -1\n", "m.mtl:2: `illum`: `-1` is not"),
+            ("newmtl a\nillum\n", "m.mtl:2: `illum`: `` is not"),
+            ("newmtl a\nmap_Kd\n", "m.mtl:2: `map_Kd`: a file name is missing; left out"),
+            ("newmtl a\nmap_d   # none\n", ""),
+            ("newmtl a\nKs spectral f.rfl\n", "m.mtl:2: `Ks`: `spectral` is not supported"),
         ] {
-            let message = read_text(text).0.unwrap_err().to_string();
-            assert!(message.contains(expected), "{message}");
+            let (materials, warnings) = read_text(text);
+            match expected {
+                // The name of a file may begin so.
+                "" => assert_eq!(materials.unwrap()[0].cutout_map.as_ref().unwrap().file, "# none"),
+                _ => {
+                    assert_eq!(materials.unwrap(), std::slice::from_ref(&plain), "{text:?}");
+                    assert!(warnings.len() == 1 && warnings[0].contains(expected), "{warnings:?}");
+                }
+            }
         }
+        let (materials, warnings) = read_text("newmtl a\nillum 2\nnewmtl a\nillum 2.0\nnewmtl\nKd 1 0 0\n");
+        let materials = materials.unwrap();
+        assert_eq!((materials[0].illumination_model, materials[1].name.as_str()), (Some(2), ""));
+        assert!(warnings.iter().any(|w| w.contains("m.mtl:4: `illum 2.0` is taken for 2")), "{warnings:?}");
+        assert!(warnings.iter().any(|w| w.contains("m.mtl:5: `newmtl` without a name")), "{warnings:?}");
     }
 
     #[test]

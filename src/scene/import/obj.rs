@@ -4,8 +4,11 @@
 //! `tobj` 4.0.5 does well on clean files and surprises on others, so it never sees the file itself: a [`Feed`] reads
 //! the logical lines, checks them and hands on a plain dialect. What the feed mends or refuses, and why:
 //!
-//! - A corner without `vt` or `vn` gets those of the corner before it once the file has any. The feed puts an entry
-//!   [`MISSING`] first in both lists and refers such corners to it; all other indices move up by one.
+//! - A corner without `vt` or `vn` gets those of the corner before it once the file has any. The feed puts an entry for
+//!   "missing" first in both lists and refers such corners to it; all other indices move up by one. What is no finite
+//!   number, or an index of what does not exist, is missing too.
+//! - Single precision is not enough for texture coordinates far from 0. The feed keeps them, and gives `tobj` their
+//!   numbers in their place.
 //! - `l` makes polygons of lines, an index 0 means "none" for `vt` and `vn`, an index far below zero wraps around:
 //!   lines and points are counted and left out, indices are checked against what is defined so far.
 //! - Faces of a material that no MTL file defines lose the material's name. Names of groups and materials are handed
@@ -16,13 +19,25 @@ use std::collections::HashMap;
 use std::io::{self, BufRead, Read};
 use std::path::Path;
 
-use super::lines::{LogicalLines, keyword, name_text, without_comment, words};
+use glam::DVec2;
+
+use super::LoadOptions;
+use super::lines::{LogicalLines, MAX_OBJ_BYTES, keyword, name_text, without_comment, words};
 use super::locate;
+use super::options::reserve;
+use super::source::Source;
 use crate::monitor::Monitor;
+use crate::scene::MAX_COORDINATE;
 use crate::{Error, Result};
 
-/// What stands for "the file has none" in the lists of texture coordinates and normals.
+/// What stands for "the file has none" in the list of normals.
 pub(super) const MISSING: f32 = f32::MAX;
+
+/// Texture coordinates from here on are read in double precision: single precision has steps of a hundredth of a texel.
+pub(super) const FAR_TEXCOORD: f64 = 64.0;
+
+/// Numbers of texture coordinates are handed on as two whole numbers, one counting so many.
+const NUMBERS_AT_ONCE: usize = 1 << 20;
 
 /// Bytes that the feed keeps ready: few, since they are copied.
 const READY_BYTES: usize = 32 << 10;
@@ -30,8 +45,11 @@ const READY_BYTES: usize = 32 << 10;
 /// An OBJ file as `tobj` gives it, with the names that stand behind its numbers.
 #[derive(Debug)]
 pub(super) struct ObjFile {
-    /// One for each run of faces of one group and material. Name: a number, index into `groups`.
+    /// One for each run of faces of one group and material. Name: a number, index into `groups`. Texture coordinates:
+    /// see [`texcoord`].
     pub models: Vec<tobj::Model>,
+    /// Texture coordinates; the first stands for "missing".
+    pub texcoords: Vec<DVec2>,
     /// Names of OBJ objects and groups.
     pub groups: Vec<String>,
     /// Names of materials in order of first use, each with the line of that use. `tobj`'s material ids are indices.
@@ -44,9 +62,17 @@ pub(super) struct ObjFile {
     pub warnings: Vec<String>,
 }
 
+/// The texture coordinates of a corner: `index` is `tobj`'s, into those of `mesh`, and `all` those of the file. `None`:
+/// the corner has none.
+pub(super) fn texcoord(all: &[DVec2], mesh: &tobj::Mesh, index: u32) -> Option<DVec2> {
+    let at = index as usize * 2;
+    let number = mesh.texcoords[at] as usize * NUMBERS_AT_ONCE + mesh.texcoords[at + 1] as usize;
+    if number == 0 { None } else { all.get(number).copied().filter(|t| t.is_finite()) }
+}
+
 /// Reads the OBJ file at `path`.
-pub(super) fn read(path: &Path, monitor: &Monitor) -> Result<ObjFile> {
-    let mut feed = Feed::new(LogicalLines::open(path)?, monitor);
+pub(super) fn read(source: &Source, path: &Path, options: &LoadOptions, monitor: &Monitor) -> Result<ObjFile> {
+    let mut feed = Feed::new(LogicalLines::open(source, path, MAX_OBJ_BYTES)?, options, monitor);
     let define = |name: &Path| {
         let name = name.display().to_string();
         let material = tobj::Material { name: name.clone(), ..Default::default() };
@@ -59,11 +85,12 @@ pub(super) fn read(path: &Path, monitor: &Monitor) -> Result<ObjFile> {
     }
     let models = match loaded {
         Ok((models, _)) => models,
-        Err(e) => return Err(locate::bad_number(path).unwrap_or_else(|| unexplained(path, e))),
+        Err(e) => return Err(locate::bad_number(source, path).unwrap_or_else(|| unexplained(path, e))),
     };
     let warnings = feed.warnings();
     Ok(ObjFile {
         models,
+        texcoords: feed.texcoords,
         groups: feed.groups.names.into_iter().map(|(name, _)| name).collect(),
         materials: feed.materials.names,
         libraries: feed.libraries,
@@ -113,7 +140,9 @@ struct Feed<'a> {
     ready: Vec<u8>,
     at: usize,
     error: Option<Error>,
+    options: &'a LoadOptions,
     defined: Defined,
+    texcoords: Vec<DVec2>,
     groups: Names,
     group: usize,
     /// Faces since the last line that opened a group.
@@ -129,6 +158,10 @@ struct Feed<'a> {
     lines_and_points: (u64, usize),
     small_faces: (u64, usize),
     free_form: (u64, usize),
+    /// And of texture coordinates and normals that are no numbers, and of indices of such that do not exist.
+    bad_texcoords: (u64, usize),
+    bad_normals: (u64, usize),
+    bad_indices: (u64, usize),
 }
 
 /// Whether reading goes on.
@@ -138,14 +171,16 @@ enum Step {
 }
 
 impl<'a> Feed<'a> {
-    fn new(lines: LogicalLines, monitor: &'a Monitor) -> Self {
+    fn new(lines: LogicalLines, options: &'a LoadOptions, monitor: &'a Monitor) -> Self {
         let mut feed = Feed {
             lines,
             monitor,
             ready: Vec::with_capacity(READY_BYTES * 2),
             at: 0,
             error: None,
+            options,
             defined: Defined::default(),
+            texcoords: vec![DVec2::NAN],
             groups: Names::default(),
             group: 0,
             faces_in_group: 0,
@@ -157,6 +192,9 @@ impl<'a> Feed<'a> {
             lines_and_points: (0, 0),
             small_faces: (0, 0),
             free_form: (0, 0),
+            bad_texcoords: (0, 0),
+            bad_normals: (0, 0),
+            bad_indices: (0, 0),
         };
         // Faces before any group.
         feed.open_group(String::new(), 0);
@@ -165,7 +203,7 @@ impl<'a> Feed<'a> {
 
     /// Turns one logical line into plain OBJ.
     fn step(&mut self) -> Result<Step> {
-        let Some((number, line)) = self.lines.next_line()? else { return Ok(Step::End) };
+        let Some((line_number, line)) = self.lines.next_line()? else { return Ok(Step::End) };
         let (key, rest) = keyword(line);
         let rest = if matches!(key, b"v" | b"vt" | b"vn" | b"f") { without_comment(rest) } else { rest };
         match key {
@@ -179,51 +217,83 @@ impl<'a> Feed<'a> {
                     n => {
                         let message =
                             format!("`v` with {n} numbers; 3 are right (or 4 with a weight, 6 with a colour)");
-                        return Err(syntax(self.lines.path(), number, message));
+                        return Err(syntax(self.lines.path(), line_number, message));
                     }
                 };
                 push_line(&mut self.ready, b"v ", kept);
             }
             b"vt" => {
                 if self.defined.texcoords == 0 {
-                    begin_list(&mut self.ready, self.group, self.faces_in_group, "vt", 2);
+                    begin_list(&mut self.ready, self.group, self.faces_in_group, "vt 0 0\n");
                 }
                 self.defined.texcoords += 1;
-                push_line(&mut self.ready, b"vt ", rest);
-                if words(rest).count() == 1 {
-                    self.ready.pop();
-                    self.ready.extend_from_slice(b" 0\n");
+                let number = self.texcoords.len();
+                if number >= MOST_TEXCOORDS {
+                    return Err(too_many(self.lines.path(), number, "texture coordinates", MOST_TEXCOORDS));
                 }
+                let texcoord = parse_texcoord(rest).unwrap_or_else(|| {
+                    note(&mut self.bad_texcoords, line_number);
+                    DVec2::NAN
+                });
+                if number == self.texcoords.capacity() {
+                    reserve(&mut self.texcoords, number, self.lines.path())?;
+                }
+                self.texcoords.push(texcoord);
+                self.ready.extend_from_slice(b"vt ");
+                push_number(&mut self.ready, (number / NUMBERS_AT_ONCE) as u64);
+                self.ready.push(b' ');
+                push_number(&mut self.ready, (number % NUMBERS_AT_ONCE) as u64);
+                self.ready.push(b'\n');
             }
             b"vn" => {
                 if self.defined.normals == 0 {
-                    begin_list(&mut self.ready, self.group, self.faces_in_group, "vn", 3);
+                    let missing = format!("vn {MISSING:e} {MISSING:e} {MISSING:e}\n");
+                    begin_list(&mut self.ready, self.group, self.faces_in_group, &missing);
                 }
                 self.defined.normals += 1;
-                push_line(&mut self.ready, b"vn ", rest);
+                if words(rest).take(3).filter_map(finite).filter(|v| v.abs() <= MAX_COORDINATE).count() == 3 {
+                    push_line(&mut self.ready, b"vn ", rest);
+                } else {
+                    note(&mut self.bad_normals, line_number);
+                    self.ready.extend_from_slice(format!("vn {MISSING:e} {MISSING:e} {MISSING:e}\n").as_bytes());
+                }
             }
             b"f" => {
                 let before = self.ready.len();
-                match push_face(&mut self.ready, rest, &self.defined) {
+                let mut bad_indices = 0;
+                match push_face(&mut self.ready, rest, &self.defined, &mut bad_indices) {
+                    Ok(corners) if corners > self.options.max_face_corners => {
+                        return Err(Error::LimitExceeded {
+                            what: format!("{}:{line_number}: a face", self.lines.path().display()),
+                            limit: "corners of a face".into(),
+                            wanted: format!("{corners} corners"),
+                            allowed: format!("{}", self.options.max_face_corners),
+                            remedy: "triangulate it in the modelling program".into(),
+                        });
+                    }
                     Ok(corners) if corners >= 3 => {
                         self.faces_in_group += 1;
                         self.group_has_faces[self.group] = true;
+                        if bad_indices > 0 {
+                            note(&mut self.bad_indices, line_number);
+                            self.bad_indices.0 += bad_indices - 1;
+                        }
                     }
                     Ok(_) => {
                         self.ready.truncate(before);
-                        note(&mut self.small_faces, number);
+                        note(&mut self.small_faces, line_number);
                     }
-                    Err(message) => return Err(syntax(self.lines.path(), number, message)),
+                    Err(message) => return Err(syntax(self.lines.path(), line_number, message)),
                 }
             }
-            b"l" | b"p" => note(&mut self.lines_and_points, number),
+            b"l" | b"p" => note(&mut self.lines_and_points, line_number),
             b"o" | b"g" => {
                 let name = name_text(rest);
-                self.open_group(name, number);
+                self.open_group(name, line_number);
             }
             b"usemtl" => {
                 let name = name_text(rest);
-                let (id, new) = self.materials.number(name, number);
+                let (id, new) = self.materials.number(name, line_number);
                 if new {
                     self.ready.extend_from_slice(format!("mtllib {id}\n").as_bytes());
                 }
@@ -231,11 +301,15 @@ impl<'a> Feed<'a> {
             }
             b"mtllib" => {
                 let name = name_text(rest);
-                self.libraries.push((name, number));
+                self.libraries.push((name, line_number));
             }
-            b"curv" | b"curv2" | b"surf" => note(&mut self.free_form, number),
+            b"curv" | b"curv2" | b"surf" => note(&mut self.free_form, line_number),
             // Smoothing groups, render attributes, comments, anything unknown: as any OBJ reader, pass over it.
             _ => {}
+        }
+        let names = self.groups.names.len().max(self.materials.names.len()).max(self.libraries.len());
+        if names > self.options.max_names {
+            return Err(too_many(self.lines.path(), names, "names", self.options.max_names));
         }
         Ok(Step::More)
     }
@@ -282,6 +356,14 @@ impl<'a> Feed<'a> {
         tell(self.lines_and_points, "line and point elements");
         tell(self.small_faces, "faces with fewer than three corners");
         tell(self.free_form, "free-form curves and surfaces");
+        let mut mend = |(count, line): (u64, usize), what: &str| {
+            if count > 0 {
+                all.push(format!("{path}:{line}: {count} {what} (first here)"));
+            }
+        };
+        mend(self.bad_texcoords, "texture coordinates (`vt`) are not finite numbers; taken as missing");
+        mend(self.bad_normals, "normals (`vn`) are not three finite numbers; computed instead");
+        mend(self.bad_indices, "indices of faces name a `vt` or `vn` that does not exist; taken as missing");
         all
     }
 }
@@ -337,26 +419,61 @@ fn push_line(out: &mut Vec<u8>, key: &[u8], rest: &[u8]) {
     out.push(b'\n');
 }
 
-/// Writes the entry [`MISSING`] of a list of texture coordinates or normals. Faces of the same group that came before
-/// must not meet that list, so they are closed first.
-fn begin_list(out: &mut Vec<u8>, group: usize, faces_in_group: u64, key: &str, numbers: usize) {
+/// The number in a word, if it is finite in single precision.
+fn finite(word: &[u8]) -> Option<f32> {
+    std::str::from_utf8(word).ok()?.parse().ok().filter(|v: &f32| v.is_finite())
+}
+
+/// Texture coordinates: one or two finite numbers.
+fn parse_texcoord(text: &[u8]) -> Option<DVec2> {
+    let mut words = words(text);
+    let number = |word: &[u8]| {
+        let single = finite(word)?;
+        if f64::from(single.abs()) < FAR_TEXCOORD {
+            return Some(f64::from(single));
+        }
+        let double: f64 = std::str::from_utf8(word).ok()?.parse().ok()?;
+        (double.abs() <= f64::from(MAX_COORDINATE)).then_some(double)
+    };
+    let s = number(words.next()?)?;
+    Some(DVec2::new(s, words.next().map_or(Some(0.0), number)?))
+}
+
+/// Most texture coordinates: their numbers are written as two floats that are exact up to 2^24.
+const MOST_TEXCOORDS: usize = u32::MAX as usize / 4;
+
+fn too_many(path: &Path, count: usize, what: &str, most: usize) -> Error {
+    Error::LimitExceeded {
+        what: path.display().to_string(),
+        limit: what.into(),
+        wanted: format!("{count} {what} or more"),
+        allowed: most.to_string(),
+        remedy: "split the scene".into(),
+    }
+}
+
+/// Writes the first entry of a list of texture coordinates or normals, which stands for "missing". Faces of the same group
+/// that came before must not meet that list, so they are closed first.
+fn begin_list(out: &mut Vec<u8>, group: usize, faces_in_group: u64, entry: &str) {
     if faces_in_group > 0 {
         out.extend_from_slice(format!("g {group}\n").as_bytes());
     }
-    out.extend_from_slice(key.as_bytes());
-    for _ in 0..numbers {
-        out.extend_from_slice(format!(" {MISSING:e}").as_bytes());
-    }
-    out.push(b'\n');
+    out.extend_from_slice(entry.as_bytes());
 }
 
-/// Writes a face in plain OBJ; the number of its corners, or what is wrong with it.
-fn push_face(out: &mut Vec<u8>, rest: &[u8], defined: &Defined) -> std::result::Result<usize, String> {
+/// Writes a face in plain OBJ; the number of its corners, or what is wrong with it. Counts the indices that are taken as
+/// missing.
+fn push_face(
+    out: &mut Vec<u8>,
+    rest: &[u8],
+    defined: &Defined,
+    bad_indices: &mut u64,
+) -> std::result::Result<usize, String> {
     out.push(b'f');
     let mut corners = 0;
     for word in words(rest) {
         out.push(b' ');
-        push_corner(out, word, defined)
+        push_corner(out, word, defined, bad_indices)
             .map_err(|why| format!("corner `{}`: {why}", String::from_utf8_lossy(&word[..word.len().min(60)])))?;
         corners += 1;
     }
@@ -364,11 +481,22 @@ fn push_face(out: &mut Vec<u8>, rest: &[u8], defined: &Defined) -> std::result::
     Ok(corners)
 }
 
-fn push_corner(out: &mut Vec<u8>, word: &[u8], defined: &Defined) -> std::result::Result<(), String> {
+fn push_corner(
+    out: &mut Vec<u8>,
+    word: &[u8],
+    defined: &Defined,
+    bad_indices: &mut u64,
+) -> std::result::Result<(), String> {
     let mut parts = word.split(|&b| b == b'/');
     let position = index(parts.next().unwrap_or_default(), defined.positions, "vertices (`v`)")?;
-    let texcoord = index(parts.next().unwrap_or_default(), defined.texcoords, "texture coordinates (`vt`)")?;
-    let normal = index(parts.next().unwrap_or_default(), defined.normals, "normals (`vn`)")?;
+    // Vertices have no fallback; these do.
+    let mut attribute = |count| {
+        index(parts.next().unwrap_or_default(), count, "").unwrap_or_else(|_| {
+            *bad_indices += 1;
+            None
+        })
+    };
+    let (texcoord, normal) = (attribute(defined.texcoords), attribute(defined.normals));
     if parts.next().is_some() {
         return Err("more than three indices; v, v/vt, v//vn or v/vt/vn are right".into());
     }

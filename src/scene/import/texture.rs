@@ -2,21 +2,19 @@
 //! Textures from PNG and JPEG files. Sizes are read from headers and checked before any texel is allocated.
 
 use std::collections::HashMap;
-use std::io::{self, BufReader, Read, Seek, SeekFrom};
+use std::io::{self, BufReader, Cursor, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
-use image::{ImageFormat, ImageReader, Limits};
+use image::{ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
 
-use crate::files::{self, InputFile};
+use super::LoadOptions;
+use super::find::{Finder, Found};
 use crate::monitor::Monitor;
 use crate::scene::{MAX_TEXTURE_SIDE, Texture};
 use crate::{Error, Result};
 
-/// Most bytes of texels in a scene.
-pub(super) const MAX_TOTAL_BYTES: u64 = 256 << 20;
-
-/// What a decoder may hold in memory, and the largest file: a picture of [`MAX_TOTAL_BYTES`] with 16 bits a channel.
-const DECODER_BYTES: u64 = 2 * MAX_TOTAL_BYTES;
+/// Largest picture file.
+const MAX_PICTURE_BYTES: u64 = 256 << 20;
 
 /// What a picture is used for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -28,62 +26,122 @@ pub(super) enum Role {
 }
 
 /// The textures of a scene; each file is read once for each role.
-#[derive(Debug, Default)]
-pub(super) struct Textures {
+pub(super) struct Textures<'a> {
     pub textures: Vec<Texture>,
-    /// Names of files that could not be found or have a format that is not read.
+    /// Names of files that could not be found or read.
     pub missing: Vec<String>,
-    pub warnings: Vec<String>,
+    /// What was missing, and what was taken from elsewhere.
+    notices: Notices,
+    finder: Finder<'a>,
     known: HashMap<(PathBuf, Role), Option<u32>>,
     total_bytes: u64,
-    monitor: Monitor,
+    max_bytes: u64,
+    monitor: &'a Monitor,
 }
 
-impl Textures {
-    /// No textures yet; loading ends when `monitor` says so.
-    pub(super) fn watched_by(monitor: &Monitor) -> Self {
-        Textures { monitor: monitor.clone(), ..Textures::default() }
+/// Sentences of which only the first few are told, since thousands may be alike.
+#[derive(Debug, Default)]
+struct Notices {
+    told: Vec<String>,
+    more: usize,
+}
+
+/// Sentences about textures that are told one by one.
+const MOST_TOLD: usize = 50;
+
+impl Notices {
+    fn push(&mut self, sentence: String) {
+        if self.told.len() < MOST_TOLD {
+            self.told.push(sentence);
+        } else {
+            self.more += 1;
+        }
     }
 
-    /// The index of the texture in `folder/name`; `None` and a warning if there is no such picture.
+    fn take(&mut self) -> Vec<String> {
+        if self.more > 0 {
+            self.told.push(format!("{} more textures are missing, damaged or lie elsewhere", self.more));
+        }
+        self.more = 0;
+        std::mem::take(&mut self.told)
+    }
+}
+
+impl<'a> Textures<'a> {
+    /// No textures yet; loading ends when `monitor` says so.
+    pub(super) fn new(finder: Finder<'a>, options: &LoadOptions, monitor: &'a Monitor) -> Self {
+        Textures {
+            textures: Vec::new(),
+            missing: Vec::new(),
+            notices: Notices::default(),
+            finder,
+            known: HashMap::new(),
+            total_bytes: 0,
+            max_bytes: options.max_texture_bytes,
+            monitor,
+        }
+    }
+
+    /// What there is to tell since this was asked last.
+    pub(super) fn take_warnings(&mut self) -> Vec<String> {
+        self.notices.take()
+    }
+
+    /// The index of the texture `name`, written by a file in `folder`; `None` and a warning if there is no such picture.
     pub(super) fn load(&mut self, folder: &Path, name: &str, role: Role) -> Result<Option<u32>> {
-        let path = find(folder, name);
-        let key = (path.clone().unwrap_or_else(|| folder.join(name)), role);
-        if let Some(&known) = self.known.get(&key) {
+        let written = (folder.join(name), role);
+        if let Some(&known) = self.known.get(&written) {
             return Ok(known);
         }
-        let instead = match role {
-            Role::Colour => "the plain colour is drawn",
-            Role::Mask => "nothing is cut out",
-        };
-        let loaded = match &path {
-            None => {
-                self.warnings.push(format!("{}: texture not found; {instead}", key.0.display()));
-                None
+        self.monitor.check()?;
+        let (path, lacks) = match self.finder.find(folder, name)? {
+            Found::There(path) => (path, None),
+            Found::Elsewhere(path) => {
+                let (at, taken) = (written.0.display(), path.display());
+                self.notices.push(format!("{at}: texture not found there; {taken} is used"));
+                (path, None)
             }
-            Some(path) => match self.decode(path, name, role)? {
-                Some(texture) => Some(texture),
-                None => {
-                    let at = path.display();
-                    self.warnings.push(format!("{at}: neither PNG nor JPEG; {instead}; convert it to PNG"));
-                    None
-                }
-            },
+            Found::Forbidden => {
+                (written.0.clone(), Some("texture lies outside the scene's folder and may not be read".to_owned()))
+            }
+            Found::Nowhere => (written.0.clone(), Some("texture not found".to_owned())),
         };
-        let index = match loaded {
-            Some(texture) => {
+        let place = (path, role);
+        // By another name it may be known already.
+        let known = if lacks.is_none() { self.known.get(&place).copied() } else { None };
+        let index = match known {
+            Some(known) => known,
+            None => self.load_found(&place.0, name, role, lacks)?,
+        };
+        self.known.insert(place, index);
+        self.known.insert(written, index);
+        Ok(index)
+    }
+
+    /// Loads the picture at `path`, unless it is known what it `lacks`.
+    fn load_found(&mut self, path: &Path, name: &str, role: Role, lacks: Option<String>) -> Result<Option<u32>> {
+        let decoded = match lacks {
+            Some(lacks) => Err(lacks),
+            None => self.decode(path, name, role)?,
+        };
+        match decoded {
+            Ok(texture) => {
                 self.textures.push(texture);
-                Some((self.textures.len() - 1) as u32)
+                Ok(Some((self.textures.len() - 1) as u32))
             }
-            None => {
-                if !self.missing.iter().any(|m| m == name) {
+            Err(lacks) => {
+                let instead = match role {
+                    Role::Colour => "the plain colour is drawn",
+                    Role::Mask => "nothing is cut out",
+                };
+                self.notices.push(format!("{}: {lacks}; {instead}", path.display()));
+                // The same name with another role follows at once, if at all.
+                if self.missing.last().is_none_or(|m| m != name) {
                     self.missing.push(name.to_string());
                 }
-                None
+                Ok(None)
             }
-        };
-        self.known.insert(key, index);
-        Ok(index)
+        }
     }
 
     /// Whether a texture has any texel that is not opaque.
@@ -91,65 +149,63 @@ impl Textures {
         self.textures[index as usize].texels.iter().any(|t| t >> 24 < 255)
     }
 
-    /// Decodes a picture; `None` if it is of another format.
-    fn decode(&mut self, path: &Path, name: &str, role: Role) -> Result<Option<Texture>> {
-        let fail = |message: String| Error::Image { path: path.to_path_buf(), message };
-        let mut head = [0u8; 32];
-        let length = read_head(path, &mut head)?;
-        let head = &head[..length];
-        let format = match image::guess_format(head) {
+    /// Decodes a picture; the inner error says what is wrong with it.
+    fn decode(&mut self, path: &Path, name: &str, role: Role) -> Result<std::result::Result<Texture, String>> {
+        let bytes = self.finder.source().read(path, MAX_PICTURE_BYTES)?;
+        let format = match image::guess_format(&bytes) {
             Ok(format @ (ImageFormat::Png | ImageFormat::Jpeg)) => format,
-            _ if length == 0 => return Err(fail("file is empty; not a PNG or JPEG picture".into())),
-            _ => return Ok(None),
+            _ if bytes.is_empty() => return Ok(Err("file is empty; not a PNG or JPEG picture".into())),
+            _ => return Ok(Err("neither PNG nor JPEG; convert it to PNG".into())),
         };
-        let monitor = self.monitor.clone();
-        let open = || -> Result<_> {
-            let file = Watched { file: files::open(path, DECODER_BYTES)?, monitor: &monitor };
-            let mut reader = ImageReader::with_format(BufReader::new(file), format);
-            // Sizes are ours to check, with the numbers in the message.
-            let mut limits = Limits::no_limits();
-            limits.max_alloc = Some(DECODER_BYTES);
-            reader.limits(limits);
-            Ok(reader)
-        };
-        let broken = |e: image::ImageError| {
+        let broken = |e: &dyn std::fmt::Display| {
             // Some decoders' messages have line ends.
             let why = e.to_string().split_whitespace().collect::<Vec<_>>().join(" ");
-            fail(format!("picture is damaged or cut short ({why}); export it again"))
+            Ok(Err(format!("picture is damaged or cut short ({why}); export it again")))
         };
         // The PNG decoder refuses absurd sizes without naming them.
-        let size = match (format, png_size(head)) {
-            (ImageFormat::Png, Some(size)) => size,
-            _ => open()?.into_dimensions().map_err(broken)?,
-        };
-        monitor.check()?;
-        self.reserve(path, size)?;
-        let decoded = open()?.decode();
-        monitor.check()?;
-        let picture = decoded.map_err(broken)?;
-        let has_alpha = picture.color().has_alpha();
-        let picture = picture.into_rgba8();
-        let (width, height) = picture.dimensions();
-        if (width, height) != size {
-            return Err(fail("picture's size differs from its header".into()));
+        if let (ImageFormat::Png, Some(size)) = (format, png_size(&bytes)) {
+            self.check_size(path, size)?;
         }
-        let bytes = picture.into_raw();
-        let use_alpha = has_alpha && bytes.chunks_exact(4).any(|p| p[3] < 255);
-        let texels = bytes
-            .chunks_exact(4)
-            .map(|p| {
-                let alpha = if role == Role::Mask && !use_alpha { luminance(p[0], p[1], p[2]) } else { p[3] };
-                u32::from_le_bytes([p[0], p[1], p[2], alpha])
-            })
-            .collect();
-        Ok(Some(Texture { name: name.to_string(), width, height, texels }))
+        let watched = Watched { bytes: Cursor::new(&bytes), monitor: self.monitor };
+        let mut reader = ImageReader::with_format(BufReader::new(watched), format);
+        // Sizes are ours to check, with the numbers in the message.
+        let mut limits = Limits::no_limits();
+        limits.max_alloc = Some(2 * self.max_bytes.max(1 << 20));
+        reader.limits(limits);
+        let decoder = match reader.into_decoder() {
+            Ok(decoder) => decoder,
+            Err(e) => {
+                self.monitor.check()?;
+                return broken(&e);
+            }
+        };
+        let (width, height) = decoder.dimensions();
+        if width == 0 || height == 0 {
+            return broken(&format_args!("size {width}x{height} is empty"));
+        }
+        let total = self.check_size(path, (width, height))?;
+        // Its decoder makes grey of what is missing.
+        if format == ImageFormat::Jpeg && !jpeg_is_whole(&bytes) {
+            return broken(&"the JPEG data has no end");
+        }
+        let decoded = decode_rgba(decoder, path)?;
+        self.monitor.check()?;
+        let (mut texels, has_alpha) = match decoded {
+            Ok(decoded) => decoded,
+            Err(e) => return broken(&e),
+        };
+        if role == Role::Mask && !(has_alpha && texels.iter().any(|t| t >> 24 < 255)) {
+            for texel in &mut texels {
+                let [r, g, b, _] = texel.to_le_bytes();
+                *texel = u32::from_le_bytes([r, g, b, luminance(r, g, b)]);
+            }
+        }
+        self.total_bytes = total;
+        Ok(Ok(Texture { name: name.to_string(), width, height, texels }))
     }
 
-    /// Counts a picture against the limits.
-    fn reserve(&mut self, path: &Path, (width, height): (u32, u32)) -> Result<()> {
-        if width == 0 || height == 0 {
-            return Err(Error::Image { path: path.to_path_buf(), message: format!("size {width}x{height} is empty") });
-        }
+    /// Checks a picture against the limits; the bytes of all texels with its own.
+    fn check_size(&self, path: &Path, (width, height): (u32, u32)) -> Result<u64> {
         let over = |limit: &str, wanted: String, allowed: String| {
             Err(Error::LimitExceeded {
                 what: format!("{}", path.display()),
@@ -162,47 +218,113 @@ impl Textures {
         if width > MAX_TEXTURE_SIDE || height > MAX_TEXTURE_SIDE {
             return over("texture side", format!("{width}x{height} texels"), format!("{MAX_TEXTURE_SIDE} texels"));
         }
-        let bytes = u64::from(width) * u64::from(height) * 4;
-        let total = self.total_bytes + bytes;
-        if total > MAX_TOTAL_BYTES {
+        let total = self.total_bytes + u64::from(width) * u64::from(height) * 4;
+        if total > self.max_bytes {
             let wanted = format!("{width}x{height} texels, {} MiB with those before it", total.div_ceil(1 << 20));
-            return over("texture memory", wanted, format!("{} MiB", MAX_TOTAL_BYTES >> 20));
+            return over("texture memory", wanted, format!("{} MiB", self.max_bytes >> 20));
         }
-        self.total_bytes = total;
-        Ok(())
+        Ok(total)
     }
 }
 
-/// A file that cannot be read any more once the work is cancelled: that is how a decoder is stopped.
+/// Bytes that cannot be read any more once the work is cancelled: that is how a decoder is stopped.
 struct Watched<'a> {
-    file: InputFile,
+    bytes: Cursor<&'a [u8]>,
     monitor: &'a Monitor,
 }
 
 impl Read for Watched<'_> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         self.monitor.check().map_err(io::Error::other)?;
-        self.file.read(buffer)
+        self.bytes.read(buffer)
     }
 }
 
 impl Seek for Watched<'_> {
     fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
-        self.file.seek(to)
+        self.bytes.seek(to)
     }
 }
 
-/// The file, as written or with slashes for backslashes.
-fn find(folder: &Path, name: &str) -> Option<PathBuf> {
-    [folder.join(name), folder.join(name.replace('\\', "/"))].into_iter().find(|p| p.is_file())
+/// Texels with red in the lowest byte, and whether the picture has alpha.
+type Texels = (Vec<u32>, bool);
+
+/// Decodes into texels, in the same memory where channels have 8 bits; the inner error is the decoder's.
+fn decode_rgba(decoder: impl ImageDecoder, path: &Path) -> Result<std::result::Result<Texels, ImageError>> {
+    let too_large = || Error::Image {
+        path: path.to_path_buf(),
+        message: "not enough memory for a picture of this size; scale it down".into(),
+    };
+    let (width, height) = decoder.dimensions();
+    let count = width as usize * height as usize;
+    let mut texels: Vec<u32> = Vec::new();
+    texels.try_reserve_exact(count).map_err(|_| too_large())?;
+    texels.resize(count, 0);
+    let color = decoder.color_type();
+    let channels = usize::from(color.channel_count());
+    let rgba = |c: &[u8]| match *c {
+        [l] => [l, l, l, 255],
+        [l, a] => [l, l, l, a],
+        [r, g, b] => [r, g, b, 255],
+        [r, g, b, a, ..] => [r, g, b, a],
+        [] => [0; 4],
+    };
+    if usize::from(color.bytes_per_pixel()) == channels {
+        // At the end of the texels' memory: texel i is written below the channels of all that follow.
+        let bytes: &mut [u8] = bytemuck::cast_slice_mut(&mut texels);
+        let first = count * (4 - channels);
+        if let Err(e) = decoder.read_image(&mut bytes[first..]) {
+            return Ok(Err(e));
+        }
+        for i in 0..count {
+            let at = first + i * channels;
+            let texel = rgba(&bytes[at..at + channels]);
+            bytes[4 * i..4 * i + 4].copy_from_slice(&texel);
+        }
+    } else {
+        // 16 bits a channel, in the machine's byte order.
+        let size = usize::try_from(decoder.total_bytes()).map_err(|_| too_large())?;
+        let mut bytes: Vec<u8> = Vec::new();
+        bytes.try_reserve_exact(size).map_err(|_| too_large())?;
+        bytes.resize(size, 0);
+        if let Err(e) = decoder.read_image(&mut bytes) {
+            return Ok(Err(e));
+        }
+        for (texel, c) in texels.iter_mut().zip(bytes.chunks_exact(2 * channels)) {
+            let mut narrow = [0; 4];
+            for (to, c) in narrow.iter_mut().zip(c.chunks_exact(2)) {
+                *to = ((u32::from(u16::from_ne_bytes([c[0], c[1]])) + 128) / 257) as u8;
+            }
+            *texel = u32::from_ne_bytes(rgba(&narrow[..channels]));
+        }
+    }
+    // In the order of bytes so far.
+    texels.iter_mut().for_each(|t| *t = u32::from_le(*t));
+    Ok(Ok((texels, color.has_alpha())))
 }
 
-fn read_head(path: &Path, head: &mut [u8]) -> Result<usize> {
-    let mut bytes = Vec::new();
-    let file = files::open(path, DECODER_BYTES)?;
-    file.take(head.len() as u64).read_to_end(&mut bytes).map_err(|e| Error::io(path, e))?;
-    head[..bytes.len()].copy_from_slice(&bytes);
-    Ok(bytes.len())
+/// Whether a JPEG file goes on to its end-of-image marker. (That of a preview within its header does not count.)
+fn jpeg_is_whole(bytes: &[u8]) -> bool {
+    const RESTARTS: std::ops::RangeInclusive<u8> = 0xd0..=0xd7;
+    let mut at = 2;
+    loop {
+        // The next marker; before it is the entropy-coded data of a scan, or filling.
+        while bytes.get(at).is_some_and(|&b| b != 0xff) {
+            at += 1;
+        }
+        match (bytes.get(at), bytes.get(at + 1)) {
+            (Some(0xff), Some(0xff)) => at += 1,
+            (Some(0xff), Some(0xd9)) => return true,
+            // A stuffed byte of data, and markers without a segment.
+            (Some(0xff), Some(0x00 | 0x01)) => at += 2,
+            (Some(0xff), Some(marker)) if RESTARTS.contains(marker) => at += 2,
+            (Some(0xff), Some(_)) => match bytes.get(at + 2..at + 4) {
+                Some(&[high, low]) => at += 2 + usize::from(u16::from_be_bytes([high, low]).max(2)),
+                _ => return false,
+            },
+            _ => return false,
+        }
+    }
 }
 
 /// Width and height from a PNG file's first bytes.

@@ -8,8 +8,38 @@
 
 use glam::{DVec2, DVec3, Vec3};
 
+use crate::Result;
+use crate::monitor::Monitor;
+
 /// Most corner tests spent on all polygons of a scene (some seconds); what is left then becomes fans.
-pub(super) const MAX_TESTS: u64 = 1_000_000_000;
+const MAX_TESTS: u64 = 1_000_000_000;
+
+/// Corner tests after which it is asked whether the work is to end: less than a millisecond.
+const TESTS_AT_ONCE: u64 = 1 << 18;
+
+/// The corner tests that may still be spent on the polygons of a scene.
+pub(super) struct Work<'a> {
+    tests_left: u64,
+    unasked: u64,
+    monitor: &'a Monitor,
+}
+
+impl<'a> Work<'a> {
+    /// For all polygons of a scene.
+    pub(super) fn new(monitor: &'a Monitor) -> Self {
+        Work { tests_left: MAX_TESTS, unasked: 0, monitor }
+    }
+
+    fn spend(&mut self, tests: u64) -> Result<()> {
+        self.tests_left = self.tests_left.saturating_sub(tests);
+        self.unasked += tests;
+        if self.unasked >= TESTS_AT_ONCE {
+            self.unasked = 0;
+            self.monitor.check()?;
+        }
+        Ok(())
+    }
+}
 
 /// How a polygon was split.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -23,11 +53,13 @@ pub(super) enum Split {
 }
 
 /// Splits the polygon with these corners; appends triangles of corner numbers to `out`, wound as the polygon is.
-/// `tests_left`: how many corner tests may still be spent, at first [`MAX_TESTS`].
-pub(super) fn split(corners: &[Vec3], tests_left: &mut u64, out: &mut Vec<[u32; 3]>) -> Split {
+///
+/// # Errors
+/// [`crate::Error::Cancelled`].
+pub(super) fn split(corners: &[Vec3], work: &mut Work, out: &mut Vec<[u32; 3]>) -> Result<Split> {
     let n = corners.len();
     if n < 3 {
-        return Split::Degenerate;
+        return Ok(Split::Degenerate);
     }
     // Relative to the first corner, where differences of floats are most exact.
     let origin = corners[0].as_dvec3();
@@ -37,7 +69,7 @@ pub(super) fn split(corners: &[Vec3], tests_left: &mut u64, out: &mut Vec<[u32; 
         normal += points[i].cross(points[(i + 1) % n]);
     }
     if normal == DVec3::ZERO {
-        return Split::Degenerate;
+        return Ok(Split::Degenerate);
     }
     let flat = flatten(&points, normal);
     // Corners at the place of the one before them would only make empty triangles.
@@ -51,14 +83,14 @@ pub(super) fn split(corners: &[Vec3], tests_left: &mut u64, out: &mut Vec<[u32; 
         ring.pop();
     }
     if ring.len() < 3 {
-        return Split::Degenerate;
+        return Ok(Split::Degenerate);
     }
     if is_convex(&ring, &flat) {
         out.extend((1..ring.len() - 1).map(|i| [ring[0], ring[i], ring[i + 1]]));
-        return Split::Exact;
+        return Ok(Split::Exact);
     }
     let first = out.len();
-    let outcome = clip_ears(&ring, &flat, tests_left, out);
+    let outcome = clip_ears(&ring, &flat, work, out)?;
     // Triangles that cover a polygon without overlap have its area; those of one that crosses itself have more.
     let flat_area = |corners: &[u32]| {
         let at = |i: usize| flat[corners[i % corners.len()] as usize];
@@ -66,7 +98,7 @@ pub(super) fn split(corners: &[Vec3], tests_left: &mut u64, out: &mut Vec<[u32; 
     };
     let covered: f64 = out[first..].iter().map(|t| flat_area(t)).sum();
     let whole = flat_area(&ring);
-    if (covered - whole).abs() > 1.0e-6 * covered { Split::Approximate } else { outcome }
+    Ok(if (covered - whole).abs() > 1.0e-6 * covered { Split::Approximate } else { outcome })
 }
 
 /// Projects along the axis that `normal` is nearest to, keeping the winding counter-clockwise.
@@ -97,7 +129,7 @@ fn is_convex(ring: &[u32], flat: &[DVec2]) -> bool {
 }
 
 /// The polygon that is left while ears are clipped.
-struct Clipper<'a> {
+struct Clipper<'a, 'w> {
     flat: &'a [DVec2],
     /// Corner numbers; the links below are places in this list.
     ring: &'a [u32],
@@ -106,10 +138,10 @@ struct Clipper<'a> {
     clipped: Vec<bool>,
     /// Places that may be reflex (or straight); those that are not any more are skipped.
     reflex: Vec<u32>,
-    tests_left: &'a mut u64,
+    work: &'a mut Work<'w>,
 }
 
-impl Clipper<'_> {
+impl Clipper<'_, '_> {
     fn point(&self, place: u32) -> DVec2 {
         self.flat[self.ring[place as usize] as usize]
     }
@@ -125,9 +157,9 @@ impl Clipper<'_> {
 
     /// Whether the triangle at `place` has an area and no reflex corner lies in it. `lenient`: corners on its edges
     /// do not count (a bridge to a hole has two edges at the same place).
-    fn is_ear(&mut self, place: u32, lenient: bool) -> bool {
+    fn is_ear(&mut self, place: u32, lenient: bool) -> Result<bool> {
         if self.turn(place) <= 0.0 {
-            return false;
+            return Ok(false);
         }
         let (p, n) = self.neighbours(place);
         let (a, b, c) = (self.point(p), self.point(place), self.point(n));
@@ -144,8 +176,8 @@ impl Clipper<'_> {
             let (u, v, w) = (area2(a, b, q), area2(b, c, q), area2(c, a, q));
             if lenient { u > 0.0 && v > 0.0 && w > 0.0 } else { u >= 0.0 && v >= 0.0 && w >= 0.0 }
         });
-        *self.tests_left = self.tests_left.saturating_sub(tests);
-        !blocked
+        self.work.spend(tests)?;
+        Ok(!blocked)
     }
 
     /// Takes a corner out of the polygon.
@@ -158,7 +190,7 @@ impl Clipper<'_> {
     }
 }
 
-fn clip_ears(ring: &[u32], flat: &[DVec2], tests_left: &mut u64, out: &mut Vec<[u32; 3]>) -> Split {
+fn clip_ears(ring: &[u32], flat: &[DVec2], work: &mut Work, out: &mut Vec<[u32; 3]>) -> Result<Split> {
     let count = ring.len() as u32;
     let mut clipper = Clipper {
         flat,
@@ -167,7 +199,7 @@ fn clip_ears(ring: &[u32], flat: &[DVec2], tests_left: &mut u64, out: &mut Vec<[
         previous: (0..count).map(|i| (i + count - 1) % count).collect(),
         clipped: vec![false; ring.len()],
         reflex: Vec::new(),
-        tests_left,
+        work,
     };
     clipper.reflex = (0..count).filter(|&i| clipper.turn(i) <= 0.0).collect();
     let mut left = count;
@@ -185,11 +217,11 @@ fn clip_ears(ring: &[u32], flat: &[DVec2], tests_left: &mut u64, out: &mut Vec<[
         candidates.reverse();
         let before = left;
         while let Some(place) = candidates.pop() {
-            if *clipper.tests_left == 0 {
+            if clipper.work.tests_left == 0 {
                 outcome = Split::Approximate;
                 break 'rounds;
             }
-            if left <= 3 || clipper.clipped[place as usize] || !clipper.is_ear(place, lenient) {
+            if left <= 3 || clipper.clipped[place as usize] || !clipper.is_ear(place, lenient)? {
                 continue;
             }
             let (p, n) = clipper.neighbours(place);
@@ -229,11 +261,12 @@ fn clip_ears(ring: &[u32], flat: &[DVec2], tests_left: &mut u64, out: &mut Vec<[
             (b, c) = (c, clipper.next[c as usize]);
         }
     }
-    outcome
+    Ok(outcome)
 }
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used)]
     use super::*;
 
     fn points(flat: &[(f32, f32)]) -> Vec<Vec3> {
@@ -241,7 +274,7 @@ mod tests {
     }
 
     fn split_all(corners: &[Vec3], out: &mut Vec<[u32; 3]>) -> Split {
-        split(corners, &mut { MAX_TESTS }, out)
+        split(corners, &mut Work::new(&Monitor::default()), out).unwrap()
     }
 
     /// Signed area above the xy plane.
@@ -354,10 +387,30 @@ mod tests {
     }
 
     #[test]
+    fn a_polygon_that_takes_long_can_be_cancelled() {
+        // A star of 4000 points: half of its corners are reflex, each of which every ear is tested against.
+        let corner = |i: u32| {
+            let (s, c) = (i as f32 / 4000.0 * std::f32::consts::PI).sin_cos();
+            let r = if i.is_multiple_of(2) { 1.0 } else { 0.9 };
+            (r * c, r * s)
+        };
+        let star = points(&(0..8000).map(corner).collect::<Vec<_>>());
+        let monitor = Monitor::default();
+        let mut out = Vec::new();
+        assert_eq!(split(&star, &mut Work::new(&monitor), &mut out).unwrap(), Split::Exact);
+        monitor.cancel().cancel();
+        let mut work = Work::new(&monitor);
+        assert!(matches!(split(&star, &mut work, &mut out), Err(crate::Error::Cancelled)));
+        assert!(MAX_TESTS - work.tests_left < 2 * TESTS_AT_ONCE);
+    }
+
+    #[test]
     fn without_time_left_a_concave_polygon_becomes_a_fan() {
         let arrow = points(&[(0.0, 0.0), (2.0, -1.0), (1.0, 0.0), (2.0, 1.0)]);
         let mut out = Vec::new();
-        assert_eq!(split(&arrow, &mut 0, &mut out), Split::Approximate);
+        let monitor = Monitor::default();
+        let mut spent = Work { tests_left: 0, ..Work::new(&monitor) };
+        assert_eq!(split(&arrow, &mut spent, &mut out).unwrap(), Split::Approximate);
         assert_eq!(out.len(), 2);
     }
 }

@@ -28,11 +28,12 @@ use glam::Vec3;
 use serde_json::{Map, Value};
 
 use super::lines::read_text;
+use super::source::Source;
 use crate::scene::{Camera, Light, MAX_INTENSITY, MAX_LIGHTS, MAX_RADIANCE, MAX_VIEW_COORDINATE, View, check};
 use crate::{Error, Result};
 
-/// Largest file that is read: far above any view, far below what would fill the memory.
-const MAX_BYTES: u64 = 16 << 20;
+/// Largest file that is read: far above any view, and what its numbers become in memory is some 50 times as large.
+const MAX_BYTES: u64 = 1 << 20;
 
 /// Keys that are for people.
 const FOR_PEOPLE: [&str; 10] =
@@ -55,8 +56,8 @@ pub(super) struct ViewFile {
 }
 
 /// Reads the view at `path`.
-pub(super) fn read(path: &Path) -> Result<ViewFile> {
-    parse(path, &read_text(path, MAX_BYTES)?)
+pub(super) fn read(source: &Source, path: &Path) -> Result<ViewFile> {
+    parse(path, &read_text(source, path, MAX_BYTES)?)
 }
 
 /// Reads the text of a view; `path` is named in messages.
