@@ -57,7 +57,7 @@ typedef struct {
   uint reference_dy;
   uint item_count;      // items of a list launch; elements of a scan
   uint list_offset;     // first list entry to read (trace, mark) or to write (scatter)
-  uint source_offset;   // step4: first list entry whose neighbours are looked at
+  uint source_offset;   // correct: first list entry whose neighbours are looked at
   uint sums_offset;     // scan: first word of this level in the sums buffer
   float t_pos;          // G2, scene units
   float t_norm;         // G3
@@ -68,9 +68,9 @@ typedef struct {
   uint flags;           // STEP_*
   uint scan_group;      // work-items of a scan's work-group, a power of two
   uint lenient_tests;   // FAIL_* bits of the tests that count only where the references look different
-  uint t_visible;       // from which difference of a channel of 0..255 on two pixels look different; 0: always
-  uint list_end;        // scatter, step4_tail: the first list entry that may not be written
-  uint pad0;
+  uint t_visible;       // smallest difference of a channel of 0..255 that is treated as visible; 0: all pixels differ
+  uint list_end;        // scatter, correct_tail: the first list entry that may not be written
+  uint pixel_class;     // trace: what its pixels become; CLASS_BASE: those of the grid, another CLASS_*: those of the list
 } StepParams;
 
 // One light; position.w and intensity.w are unused.

@@ -124,7 +124,7 @@ fn every_path_that_the_documents_name_exists() {
             assert!(root().join(&path).exists(), "{document} names {path}, which is not there");
         }
     }
-    assert_eq!(named_paths("see `src/lib.rs` and kernels/step1.cl."), ["src/lib.rs", "kernels/step1.cl"]);
+    assert_eq!(named_paths("see `src/lib.rs` and kernels/trace.cl."), ["src/lib.rs", "kernels/trace.cl"]);
 }
 
 #[test]

@@ -5,7 +5,7 @@
 #![allow(clippy::unwrap_used)]
 
 use rarefy::device::backend::{Backend, FrameBuffer};
-use rarefy::device::stage::Kernel;
+use rarefy::device::stage::{Kernel, Stage};
 use rarefy::layout::*;
 use rarefy::method::options::{Compared, Correction, Mode, RenderOptions, Spread};
 use rarefy::render::renderer::Renderer;
@@ -468,7 +468,7 @@ fn sweep_once(before: &Planes, full: &Planes, shadows: bool) -> Planes {
     now
 }
 
-/// One launch of step4's kernels at a time, as the pipeline does it, from `sources` in any order.
+/// One launch of post-correction at a time, as the pipeline does it, from `sources` in any order.
 fn rounds_by_hand(backend: &mut dyn Backend, mut sources: Vec<u32>, flags: u32) -> u32 {
     let mut fired = 0;
     while !sources.is_empty() {
@@ -481,11 +481,12 @@ fn rounds_by_hand(backend: &mut dyn Backend, mut sources: Vec<u32>, flags: u32) 
             scan_group: backend.scan_group(),
             ..NO_STEP
         };
-        backend.run(Kernel::Step4Mark, &step).unwrap();
-        backend.run(Kernel::Step4Count, &step).unwrap();
+        let mut run = |kernel, step: &StepParams| backend.run(Stage::Step4, kernel, step).unwrap();
+        run(Kernel::CorrectMark, &step);
+        run(Kernel::CorrectCount, &step);
         let (mut level, mut sums_offset) = (step.item_count.div_ceil(32), 0);
         loop {
-            backend.run(Kernel::Step4Scan, &StepParams { item_count: level, sums_offset, ..step }).unwrap();
+            run(Kernel::PackScan, &StepParams { item_count: level, sums_offset, ..step });
             sums_offset += level;
             level = level.div_ceil(step.scan_group);
             if level == 1 {
@@ -494,8 +495,9 @@ fn rounds_by_hand(backend: &mut dyn Backend, mut sources: Vec<u32>, flags: u32) 
         }
         let found = backend.read_sum(sums_offset).unwrap();
         if found > 0 {
-            backend.run(Kernel::Step4Scatter, &StepParams { list_end: count + found, ..step }).unwrap();
-            backend.run(Kernel::Step4Trace, &StepParams { item_count: found, ..step }).unwrap();
+            let mut run = |kernel, step: &StepParams| backend.run(Stage::Step4, kernel, step).unwrap();
+            run(Kernel::CorrectScatter, &StepParams { list_end: count + found, ..step });
+            run(Kernel::Trace, &StepParams { item_count: found, ..step });
         }
         fired += found;
         sources = backend.read(FrameBuffer::List, count as usize..(count + found) as usize).unwrap();
@@ -527,7 +529,7 @@ const NO_STEP: StepParams = StepParams {
     lenient_tests: 0,
     t_visible: 0,
     list_end: 0,
-    pad: 0,
+    pixel_class: CLASS_CORRECTED,
 };
 
 #[test]

@@ -7,7 +7,7 @@ use rarefy::Error;
 use rarefy::device::backend::Backend;
 use rarefy::device::opencl::executor::{OpenClBackend, scan_group, work_group};
 use rarefy::device::opencl::{CacheFolder, OpenOptions, Profile, open_with};
-use rarefy::device::stage::Kernel;
+use rarefy::device::stage::LAUNCHES;
 use rarefy::method::options::RenderOptions;
 use rarefy::render::renderer::{DeviceChoice, Keep, Renderer, RendererOptions};
 use rarefy::scene::builtin;
@@ -105,7 +105,7 @@ fn half_of_each_limit_adapts_or_refuses() {
     prepared.draw(&mut device, &frame(), false).unwrap();
     let (limits, choices) = (device.door().limits().clone(), device.door().choices().clone());
     let scan = u64::from(scan_group(&limits));
-    let shapes = Kernel::ALL.into_iter().filter_map(|kernel| work_group(&choices, kernel));
+    let shapes = LAUNCHES.into_iter().filter_map(|(stage, kernel, _)| work_group(&choices, stage, kernel));
     let widest = shapes.clone().flatten().max().unwrap() as u64;
     let largest = shapes.map(|[width, height]| (width * height) as u64).max().unwrap();
     assert_eq!(used(&prepared, "cl_device_global_mem_size"), device.peak_bytes());

@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use rarefy::device::kernels::FILES;
 use rarefy::device::opencl::Profile;
-use rarefy::device::stage::{Binding, Kernel, Stage};
+use rarefy::device::stage::{Binding, Kernel, Program};
 use rarefy::layout::{BuildFlavour, StepParams, Traversal, build_options};
 use rarefy_host_tests::clang::{clang, intermediate_code};
 use rarefy_host_tests::command::root;
@@ -172,8 +172,8 @@ fn kernels_for_gpus_have_no_private_arrays() {
         }
     }
     // The private stack is one, in every program that traces.
-    for stage in [Stage::Step1, Stage::Step2c, Stage::Step3c, Stage::Step4] {
-        let found = compiled(clang, &format!("{}.cl", stage.name()), BuildFlavour::default()).private_arrays();
+    for program in [Program::Trace, Program::CorrectTail, Program::CorrectSweep] {
+        let found = compiled(clang, &format!("{}.cl", program.name()), BuildFlavour::default()).private_arrays();
         assert!(found.iter().any(|f| f.contains("closest_hit: a private [48 x i32]")), "{found:#?}");
         assert!(found.iter().any(|f| f.contains("closest_hit: an index into private [48 x float]")), "{found:#?}");
     }

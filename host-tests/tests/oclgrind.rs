@@ -108,7 +108,7 @@ fn a_read_of_what_nobody_wrote_is_found() {
     let options = RenderOptions { width: 26, height: 19, ..RenderOptions::default() };
     draw_afresh(&options, false, Traversal::PrivateStack, Some(mutation));
     let found = findings(&log);
-    assert!(found.contains("depends on uninitialized value") && found.contains("step2a"), "{found}");
+    assert!(found.contains("depends on uninitialized value") && found.contains("check"), "{found}");
 }
 
 #[test]

@@ -134,10 +134,10 @@ fn auto_falls_back_with_a_notice() {
         assert_eq!(verdicts(folder.path()).len(), 1);
     }
     // A program that does not even build.
-    let mutation = Mutation { file: "step2b.cl".into(), from: "__kernel".into(), to: "__colonel".into() };
+    let mutation = Mutation { file: "pack.cl".into(), from: "__kernel".into(), to: "__colonel".into() };
     let mut fallen = renderer(&options(DeviceChoice::Auto, folder.path(), Some(mutation.clone()))).unwrap();
     assert_eq!(fallen.info().backend, "cpu");
-    assert!(fallen.notices()[0].contains("`step2b` does not build"), "{:?}", fallen.notices());
+    assert!(fallen.notices()[0].contains("`pack` does not build"), "{:?}", fallen.notices());
     let refused = renderer(&options(OPENCL, folder.path(), Some(mutation))).err();
     assert!(matches!(refused, Some(Error::KernelBuild { .. })), "{refused:?}");
     // Only verdicts are kept, and an intact device is none the worse.

@@ -10,7 +10,7 @@ use rarefy::Scene;
 use rarefy::device::backend::{Backend, BackendInfo, BufferSizes, FrameBuffer, MemoryLimits};
 use rarefy::device::hooks::parity::{KernelParity, ParityBackend};
 use rarefy::device::opencl::{OpenOptions, Profile};
-use rarefy::device::stage::{Kernel, Stage};
+use rarefy::device::stage::{Kernel, LAUNCHES, Stage};
 use rarefy::device::twin::executor::TwinBackend;
 use rarefy::layout::{FrameParams, StepParams, expected_probe};
 use rarefy::method::options::{GcolSpace, Interpolation, Method, Mode, RenderOptions, TestSet};
@@ -79,8 +79,8 @@ fn every_launch_of_every_kind_of_frame_equals_the_twin() {
     // Counting or not in turn: the flavours are two programs, and the options do not care.
     let frames = combinations(50, 38).into_iter().enumerate().map(|(i, options)| (options, i % 2 == 0));
     let results = compare(&prepared, &mut device, frames);
-    let launched: BTreeSet<&str> = results.iter().map(|r| r.kernel.name()).collect();
-    assert_eq!(launched, Kernel::ALL.iter().map(|k| k.name()).collect(), "not every kernel was compared");
+    let launched: BTreeSet<&str> = results.iter().map(|r| r.kernel.label(r.stage)).collect();
+    assert_eq!(launched, LAUNCHES.iter().map(|(.., label)| *label).collect(), "not every launch was compared");
     assert!(results.iter().all(|r| r.words > 0));
 }
 
@@ -298,10 +298,10 @@ fn the_device_lays_structs_out_as_the_host_does() {
     assert_ne!(device.probe().unwrap(), expected_probe());
 }
 
-/// A twin that changes the first word of `buffer` after each launch of `kernel`.
+/// A twin that changes the first word of `buffer` after each launch of a kernel by a stage.
 struct Tampered {
     inner: TwinBackend,
-    kernel: Kernel,
+    launch: (Stage, Kernel),
     buffer: FrameBuffer,
 }
 
@@ -316,15 +316,19 @@ impl Backend for Tampered {
         self.inner.memory_limits()
     }
 
+    fn prefers_few_launches(&self) -> bool {
+        self.inner.prefers_few_launches()
+    }
+
     fn traversal(&self) -> rarefy::layout::Traversal {
         self.inner.traversal()
     }
     fn begin(&mut self, frame: &FrameParams, sizes: &BufferSizes) -> rarefy::Result<()> {
         self.inner.begin(frame, sizes)
     }
-    fn run(&mut self, kernel: Kernel, step: &StepParams) -> rarefy::Result<()> {
-        self.inner.run(kernel, step)?;
-        if kernel == self.kernel {
+    fn run(&mut self, stage: Stage, kernel: Kernel, step: &StepParams) -> rarefy::Result<()> {
+        self.inner.run(stage, kernel, step)?;
+        if (stage, kernel) == self.launch {
             let first = self.inner.read(self.buffer, 0..1)?[0];
             self.inner.write(self.buffer, &[first ^ 1])?;
         }
@@ -339,7 +343,7 @@ impl Backend for Tampered {
     fn write(&mut self, buffer: FrameBuffer, words: &[u32]) -> rarefy::Result<()> {
         self.inner.write(buffer, words)
     }
-    fn take_timings(&mut self) -> rarefy::Result<Vec<(Kernel, f64)>> {
+    fn take_timings(&mut self) -> rarefy::Result<Vec<(Stage, f64)>> {
         self.inner.take_timings()
     }
     fn watch(&mut self, monitor: &Monitor) {
@@ -359,22 +363,22 @@ fn the_comparison_sees_one_changed_word_of_any_buffer() {
     let prepared = Prepared::named("spheres");
     let options = sized(33, 17);
     compare(&prepared, &mut prepared.twin(), [(options.clone(), true)]);
-    for (kernel, buffer) in [
-        (Kernel::Step1, Attributes),
-        (Kernel::Step2a, Color),
-        (Kernel::Step2bCount, Masks),
-        (Kernel::Step2bScan, Sums),
-        (Kernel::Step3bScatter, List),
-        (Kernel::Step3c, Counters),
+    for (stage, kernel, buffer) in [
+        (Stage::Step1, Kernel::Trace, Attributes),
+        (Stage::Step2a, Kernel::Check, Color),
+        (Stage::Step2b, Kernel::PackCount, Masks),
+        (Stage::Step2b, Kernel::PackScan, Sums),
+        (Stage::Step3b, Kernel::PackScatter, List),
+        (Stage::Step3c, Kernel::Trace, Counters),
     ] {
-        let mut device = Tampered { inner: prepared.twin(), kernel, buffer };
+        let mut device = Tampered { inner: prepared.twin(), launch: (stage, kernel), buffer };
         let mut parity = ParityBackend::new(prepared.twin(), &mut device);
         prepared.draw(&mut parity, &options, true).unwrap();
         let caught = differing(&parity.results);
-        assert_eq!(caught.len(), 1, "{kernel:?}");
+        assert_eq!(caught.len(), 1, "{}", kernel.label(stage));
         // Step III runs once for the even columns and once for the odd ones.
-        let launches = if kernel.stage() >= Stage::Step3a { 2 } else { 1 };
-        assert_eq!((caught[0].kernel, caught[0].different), (kernel, launches));
+        let launches = if stage >= Stage::Step3a { 2 } else { 1 };
+        assert_eq!((caught[0].stage, caught[0].kernel, caught[0].different), (stage, kernel, launches));
         assert_eq!(caught[0].first.map(|f| (f.0, f.1)), Some((buffer, 0)));
     }
     // Pictures and classes of whole frames, too.

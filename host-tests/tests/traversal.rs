@@ -11,7 +11,7 @@ use proptest::test_runner::{Config, RngSeed};
 use rarefy::device::backend::{Backend, FrameBuffer};
 use rarefy::device::hooks::parity::ParityBackend;
 use rarefy::device::opencl::OpenOptions;
-use rarefy::device::stage::Kernel;
+use rarefy::device::stage::LAUNCHES;
 use rarefy::device::twin::SceneArgs;
 use rarefy::device::twin::scene_args::Work;
 use rarefy::device::twin::traverse::{Hit, any_hit, closest_hit};
@@ -223,8 +223,8 @@ fn every_launch_equals_that_of_a_twin_that_walks_alike() {
         }
         let different: Vec<_> = parity.results.iter().filter(|result| result.different > 0).collect();
         assert!(different.is_empty(), "{}: {different:#?}", traversal.name());
-        let launched: BTreeSet<&str> = parity.results.iter().map(|result| result.kernel.name()).collect();
-        assert_eq!(launched, Kernel::ALL.iter().map(|kernel| kernel.name()).collect());
+        let launched: BTreeSet<&str> = parity.results.iter().map(|result| result.kernel.label(result.stage)).collect();
+        assert_eq!(launched, LAUNCHES.iter().map(|(.., label)| *label).collect());
     }
     // A twin that walks otherwise is told by its steps, and by nothing else.
     let mut device = prepared.device(true, &walking_by(Traversal::Stackless));

@@ -3,8 +3,8 @@
 #![allow(clippy::unwrap_used)]
 
 use glam::{Vec2, Vec3};
+use rarefy::device::twin::ray_tree::fresnel;
 use rarefy::device::twin::shade::sample_texture;
-use rarefy::device::twin::trace::fresnel;
 use rarefy::layout::{NO_OBJECT, PLANE_OBJECT, SURFACE_MIRROR};
 use rarefy::method::options::Mode;
 use rarefy::scene::builtin;

@@ -40,7 +40,7 @@ const LIST_BYTES: f64 = 4.0;
 pub struct LaunchCost {
     /// The stage that it belongs to.
     pub stage: Stage,
-    /// Costs of the lanes. All wait for each other between passes: one pass, but for the rounds of `step4_tail`. Lanes
+    /// Costs of the lanes. All wait for each other between passes: one pass, but for the rounds of `correct_tail`. Lanes
     /// that have no work cost 0 but take part.
     pub passes: Vec<Vec<f64>>,
     /// Whether the host waits for what it finds.
@@ -127,12 +127,9 @@ pub fn launch_costs(backend: &mut dyn Backend, frame: &FrameParams, launches: &[
     let classes = if frame.block > 1 { read_plane(backend, frame, PLANE_CLASS)? } else { Vec::new() };
     let items = FrameItems { frame, counters, classes, list: backend.read(FrameBuffer::List, 0..list_end as usize)? };
     let cost = |launch: &Recorded| LaunchCost {
-        stage: launch.kernel.stage(),
+        stage: launch.stage,
         passes: items.passes(launch),
-        waits: matches!(
-            launch.kernel,
-            Kernel::Step2bCount | Kernel::Step3bCount | Kernel::Step4Count | Kernel::Step4Tail
-        ),
+        waits: matches!(launch.kernel, Kernel::PackCount | Kernel::CorrectCount | Kernel::CorrectTail),
     };
     Ok(launches.iter().map(cost).collect())
 }
@@ -141,8 +138,8 @@ pub fn launch_costs(backend: &mut dyn Backend, frame: &FrameParams, launches: &[
 fn listed(launch: &Recorded) -> Option<Range<u32>> {
     let begin = launch.step.list_offset;
     match launch.kernel {
-        Kernel::Step2c | Kernel::Step3c | Kernel::Step4Trace => Some(begin..begin + launch.step.item_count),
-        Kernel::Step4Tail => launch.round_ends.last().map(|&end| begin..end),
+        Kernel::Trace if launch.stage != Stage::Step1 => Some(begin..begin + launch.step.item_count),
+        Kernel::CorrectTail => launch.round_ends.last().map(|&end| begin..end),
         _ => None,
     }
 }
@@ -158,44 +155,40 @@ struct FrameItems<'a> {
 
 impl FrameItems<'_> {
     fn passes(&self, launch: &Recorded) -> Vec<Vec<f64>> {
-        if launch.kernel != Kernel::Step4Tail {
-            return vec![self.lanes(launch.kernel, &launch.step)];
+        if launch.kernel != Kernel::CorrectTail {
+            return vec![self.lanes(launch.stage, launch.kernel, &launch.step)];
         }
         // Each round is a mark, which packs, too, and a trace.
         let (mut sources, mut begin, mut passes) = (launch.step.item_count / 4, launch.step.list_offset, Vec::new());
         for &end in &launch.round_ends {
             let round = StepParams { list_offset: begin, item_count: end - begin, ..launch.step };
             let mark = StepParams { item_count: 4 * sources, ..round };
-            passes.push(self.lanes(Kernel::Step4Mark, &mark));
-            passes.push(self.lanes(Kernel::Step4Trace, &round));
+            passes.push(self.lanes(launch.stage, Kernel::CorrectMark, &mark));
+            passes.push(self.lanes(launch.stage, Kernel::Trace, &round));
             (sources, begin) = (end - begin, end);
         }
         passes
     }
 
-    fn lanes(&self, kernel: Kernel, step: &StepParams) -> Vec<f64> {
+    fn lanes(&self, stage: Stage, kernel: Kernel, step: &StepParams) -> Vec<f64> {
         let bytes = |bytes: f64| bytes / BYTES_PER_STEP;
         let alike = |count: u32, cost: f64| vec![cost; count as usize];
         match kernel {
-            Kernel::Step1 => self.grid_lanes(step, |x, y| self.traced(x, y)),
-            Kernel::Step2a | Kernel::Step3a => self.grid_lanes(step, |x, y| self.checked(x, y)),
-            Kernel::Step2c | Kernel::Step3c | Kernel::Step4Trace => {
+            Kernel::Trace if stage == Stage::Step1 => self.grid_lanes(step, |x, y| self.traced(x, y)),
+            Kernel::Check => self.grid_lanes(step, |x, y| self.checked(x, y)),
+            Kernel::Trace => {
                 let entries = &self.list[step.list_offset as usize..][..step.item_count as usize];
                 entries.iter().map(|&pixel| self.traced(pixel & 0xffff, pixel >> 16) + bytes(LIST_BYTES)).collect()
             }
             // A source's and a neighbour's class; few go on to compare.
-            Kernel::Step4Mark => alike(step.item_count, bytes(LIST_BYTES + 8.0)),
+            Kernel::CorrectMark => alike(step.item_count, bytes(LIST_BYTES + 8.0)),
             // 32 class words, a mask and a sum; the scan reads and writes a sum; scatter writes few entries.
-            Kernel::Step2bCount | Kernel::Step3bCount | Kernel::Step4Count => {
-                alike(step.item_count.div_ceil(32), bytes(4.0 * 34.0))
-            }
-            Kernel::Step2bScan | Kernel::Step3bScan | Kernel::Step4Scan => alike(step.item_count, bytes(8.0)),
-            Kernel::Step2bScatter | Kernel::Step3bScatter | Kernel::Step4Scatter => {
-                alike(step.item_count.div_ceil(32), bytes(4.0 * 12.0))
-            }
-            Kernel::Step4Tail => unreachable!("its passes are those of other kernels"),
+            Kernel::PackCount | Kernel::CorrectCount => alike(step.item_count.div_ceil(32), bytes(4.0 * 34.0)),
+            Kernel::PackScan => alike(step.item_count, bytes(8.0)),
+            Kernel::PackScatter | Kernel::CorrectScatter => alike(step.item_count.div_ceil(32), bytes(4.0 * 12.0)),
+            Kernel::CorrectTail => unreachable!("its passes are those of other kernels"),
             // One lane a line: what it fires is not attributed to lines.
-            Kernel::Step4Sweep => alike(step.item_count, bytes(16.0 * f64::from(self.frame.width))),
+            Kernel::CorrectSweep => alike(step.item_count, bytes(16.0 * f64::from(self.frame.width))),
         }
     }
 

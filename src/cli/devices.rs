@@ -7,7 +7,7 @@ use rarefy::Result;
 use rarefy::device::opencl::executor::{scan_group, work_group};
 use rarefy::device::opencl::{DeviceFound, Limits, Profile, discover};
 use rarefy::device::profiles::MemoryPath;
-use rarefy::device::stage::{Kernel, Stage};
+use rarefy::device::stage::Stage;
 use rarefy::render::renderer::DEFAULT_BUDGET_BYTES;
 
 use super::args::{DevicesArgs, profile};
@@ -109,8 +109,8 @@ fn choice_rows(device: &DeviceFound, profile: Option<&Profile>) -> Rows {
     let mut rows = Rows::new();
     for stage in Stage::ALL {
         let mut shapes: Vec<String> = Vec::new();
-        for kernel in Kernel::ALL.into_iter().filter(|kernel| kernel.stage() == stage) {
-            let Some(wanted) = work_group(choices, kernel) else { continue };
+        for kernel in stage.kernels() {
+            let Some(wanted) = work_group(choices, stage, kernel) else { continue };
             let [width, height] = limits.fit_work_group(wanted, u64::MAX, false);
             let shape = format!("{width}x{height}");
             if !shapes.contains(&shape) {

@@ -2,7 +2,7 @@
 //! Where kernels run: on an OpenCL device or as their CPU twins, behind one interface.
 
 use super::launch_check::scan_words;
-use crate::device::stage::Kernel;
+use crate::device::stage::{Kernel, Stage};
 use crate::error::Result;
 use crate::layout::*;
 use crate::monitor::Monitor;
@@ -127,17 +127,21 @@ pub trait Backend {
     /// How its rays walk through the kd-tree: what the counted steps depend on.
     fn traversal(&self) -> Traversal;
 
+    /// Whether rounds of post-correction from few sources are best done by `correct_tail`, many in one launch: where a
+    /// launch and a count read back cost more than such a round. The picture is the same.
+    fn prefers_few_launches(&self) -> bool;
+
     /// Makes ready for a frame or a window of it: buffers of these sizes and the parameters.
     ///
     /// # Errors
     /// A limit of the device or its profile, or a failing call.
     fn begin(&mut self, frame: &FrameParams, sizes: &BufferSizes) -> Result<()>;
 
-    /// Launches a kernel.
+    /// Launches a kernel for a stage.
     ///
     /// # Errors
     /// A limit of the device or its profile, a program that does not build, or a failing call.
-    fn run(&mut self, kernel: Kernel, step: &StepParams) -> Result<()>;
+    fn run(&mut self, stage: Stage, kernel: Kernel, step: &StepParams) -> Result<()>;
 
     /// Reads one word of the sums buffer: the count of a packing.
     ///
@@ -157,11 +161,11 @@ pub trait Backend {
     /// A failing call.
     fn write(&mut self, buffer: FrameBuffer, words: &[u32]) -> Result<()>;
 
-    /// Milliseconds that kernels took since the last call, by kernel.
+    /// Milliseconds that launches took since the last call, with their stages.
     ///
     /// # Errors
     /// A failing call.
-    fn take_timings(&mut self) -> Result<Vec<(Kernel, f64)>>;
+    fn take_timings(&mut self) -> Result<Vec<(Stage, f64)>>;
 
     /// From here on `monitor` watches: launches tell it how far they are, launches and transfers end with
     /// [`crate::Error::Cancelled`] once it says so. The default monitor watches nothing.

@@ -4,7 +4,7 @@
 //! A phone has no include path: `#include "..."` lines are replaced by the file's text here, once per program, with
 //! `#line` marks so that compiler messages name the real file and line.
 
-use crate::device::stage::Stage;
+use crate::device::stage::Program;
 
 /// Every kernel file with its path below `kernels/`.
 pub const FILES: &[(&str, &str)] = &[
@@ -15,20 +15,19 @@ pub const FILES: &[(&str, &str)] = &[
     ("common/kdtree.clh", include_str!("../../kernels/common/kdtree.clh")),
     ("common/shade.clh", include_str!("../../kernels/common/shade.clh")),
     ("common/attributes.clh", include_str!("../../kernels/common/attributes.clh")),
-    ("common/trace.clh", include_str!("../../kernels/common/trace.clh")),
+    ("common/ray_tree.clh", include_str!("../../kernels/common/ray_tree.clh")),
     ("common/known_shadows.clh", include_str!("../../kernels/common/known_shadows.clh")),
+    ("common/correction.clh", include_str!("../../kernels/common/correction.clh")),
     ("common/bridge.clh", include_str!("../../kernels/common/bridge.clh")),
     ("common/similarity.clh", include_str!("../../kernels/common/similarity.clh")),
     ("common/pack.clh", include_str!("../../kernels/common/pack.clh")),
     ("common/pack_order.clh", include_str!("../../kernels/common/pack_order.clh")),
-    ("step1.cl", include_str!("../../kernels/step1.cl")),
-    ("step2a.cl", include_str!("../../kernels/step2a.cl")),
-    ("step2b.cl", include_str!("../../kernels/step2b.cl")),
-    ("step2c.cl", include_str!("../../kernels/step2c.cl")),
-    ("step3a.cl", include_str!("../../kernels/step3a.cl")),
-    ("step3b.cl", include_str!("../../kernels/step3b.cl")),
-    ("step3c.cl", include_str!("../../kernels/step3c.cl")),
-    ("step4.cl", include_str!("../../kernels/step4.cl")),
+    ("trace.cl", include_str!("../../kernels/trace.cl")),
+    ("check.cl", include_str!("../../kernels/check.cl")),
+    ("pack.cl", include_str!("../../kernels/pack.cl")),
+    ("correct.cl", include_str!("../../kernels/correct.cl")),
+    ("correct_tail.cl", include_str!("../../kernels/correct_tail.cl")),
+    ("correct_sweep.cl", include_str!("../../kernels/correct_sweep.cl")),
     ("probe.cl", include_str!("../../kernels/probe.cl")),
 ];
 
@@ -44,9 +43,9 @@ pub struct Mutation {
     pub to: String,
 }
 
-/// The program of a stage: its kernel file with everything that it includes.
-pub fn stage_source(stage: Stage, mutation: Option<&Mutation>) -> String {
-    assemble(&format!("{}.cl", stage.name()), mutation)
+/// The text of a program: its kernel file with everything that it includes.
+pub fn program_source(program: Program, mutation: Option<&Mutation>) -> String {
+    assemble(&format!("{}.cl", program.name()), mutation)
 }
 
 /// The text of `file` with its includes in place.
@@ -90,17 +89,17 @@ mod tests {
 
     #[test]
     fn programs_hold_every_include_once_and_keep_line_numbers() {
-        for stage in Stage::ALL {
-            let source = stage_source(stage, None);
-            assert!(!source.contains("#include"), "{}", stage.name());
+        for program in Program::ALL {
+            let source = program_source(program, None);
+            assert!(!source.contains("#include"), "{}", program.name());
             assert_eq!(source.matches("#line 1 \"kernels/types.h\"").count(), 1);
         }
-        let source = stage_source(Stage::Step1, None);
-        let after = source.split("__kernel void step1").next().unwrap().rsplit("#line ").next().unwrap();
+        let source = program_source(Program::Trace, None);
+        let after = source.split("__kernel void trace").next().unwrap().rsplit("#line ").next().unwrap();
         let (line, rest) = after.split_once(' ').unwrap();
-        let expected = FILES.iter().find(|(n, _)| *n == "step1.cl").unwrap().1;
+        let expected = FILES.iter().find(|(n, _)| *n == "trace.cl").unwrap().1;
         let kernel_line = expected.lines().position(|l| l.starts_with("__kernel")).unwrap() + 1;
-        assert!(rest.starts_with("\"kernels/step1.cl\"\n"));
+        assert!(rest.starts_with("\"kernels/trace.cl\"\n"));
         assert_eq!(line.parse::<usize>().unwrap() + rest.matches('\n').count() - 1, kernel_line);
     }
 }

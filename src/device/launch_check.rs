@@ -5,7 +5,7 @@
 //! back end, before it can overwrite anything.
 
 use super::backend::BufferSizes;
-use super::stage::{Binding, Items, Kernel};
+use super::stage::{Binding, Items, Kernel, Stage};
 use crate::error::{Error, Result};
 use crate::layout::*;
 
@@ -13,12 +13,18 @@ use crate::layout::*;
 ///
 /// # Errors
 /// [`Error::LaunchBeyondBuffer`] with the first thing that there is too little of.
-pub fn check_launch(kernel: Kernel, step: &StepParams, frame: &FrameParams, sizes: &BufferSizes) -> Result<()> {
+pub fn check_launch(
+    stage: Stage,
+    kernel: Kernel,
+    step: &StepParams,
+    frame: &FrameParams,
+    sizes: &BufferSizes,
+) -> Result<()> {
     let need = |what: &'static str, wanted: u64, have: u64| {
         if wanted <= have {
             return Ok(());
         }
-        Err(Error::LaunchBeyondBuffer { kernel: kernel.name(), what, wanted, have })
+        Err(Error::LaunchBeyondBuffer { kernel: kernel.label(stage), what, wanted, have })
     };
     let rows = u64::from(frame.window_end.saturating_sub(frame.window_begin));
     let pitch = u64::from(frame.plane_pitch);
@@ -26,7 +32,7 @@ pub fn check_launch(kernel: Kernel, step: &StepParams, frame: &FrameParams, size
     for binding in kernel.bindings() {
         match binding {
             // Full tracing keeps no attributes unless it is asked to.
-            Binding::Attributes if kernel != Kernel::Step1 || step.flags & STEP_STORE != 0 => {
+            Binding::Attributes if stage != Stage::Step1 || step.flags & STEP_STORE != 0 => {
                 need("words of attributes", u64::from(PLANE_COUNT) * pitch, sizes.attributes as u64)?;
             }
             Binding::Color => need("words of colour", u64::from(frame.width) * rows, sizes.color as u64)?,
@@ -39,7 +45,7 @@ pub fn check_launch(kernel: Kernel, step: &StepParams, frame: &FrameParams, size
     let list = |end: u64| need("list entries", end, sizes.list as u64);
     let sums = |end: u64| need("words of sums", end, sizes.sums as u64);
     let masks = |end: u64| need("mask words", end, sizes.masks as u64);
-    match kernel.items() {
+    match kernel.items(stage) {
         Items::Grid => {
             let end = |origin: u32, step: u32, count: u32| match count {
                 0 => 0,
@@ -50,8 +56,8 @@ pub fn check_launch(kernel: Kernel, step: &StepParams, frame: &FrameParams, size
             need("rows above the grid", u64::from(frame.window_begin), u64::from(step.origin_y))
         }
         Items::List => match kernel {
-            Kernel::Step4Mark => list(sources_end(step)),
-            Kernel::Step4Sweep => {
+            Kernel::CorrectMark => list(sources_end(step)),
+            Kernel::CorrectSweep => {
                 let lines = if step.step_x != 0 { rows } else { u64::from(frame.width) };
                 need("lines", items, lines)
             }
@@ -61,11 +67,11 @@ pub fn check_launch(kernel: Kernel, step: &StepParams, frame: &FrameParams, size
             let chunks = items.div_ceil(32);
             masks(chunks)?;
             match kernel {
-                Kernel::Step4Count | Kernel::Step4Scatter => list(sources_end(step))?,
+                Kernel::CorrectCount | Kernel::CorrectScatter => list(sources_end(step))?,
                 _ => {}
             }
             match kernel {
-                Kernel::Step2bScatter | Kernel::Step3bScatter | Kernel::Step4Scatter => {
+                Kernel::PackScatter | Kernel::CorrectScatter => {
                     sums(scan_words(chunks, step.scan_group))?;
                     list(u64::from(step.list_end))
                 }
@@ -84,7 +90,7 @@ pub fn check_launch(kernel: Kernel, step: &StepParams, frame: &FrameParams, size
     }
 }
 
-/// Behind the last list entry whose neighbours a launch of step4 looks at.
+/// Behind the last list entry whose neighbours a launch of post-correction looks at.
 fn sources_end(step: &StepParams) -> u64 {
     let ways = if step.flags & STEP_BRIDGE != 0 { STEP4_WAYS_MOST } else { 4 };
     u64::from(step.source_offset) + u64::from(step.item_count.div_ceil(ways))
@@ -105,6 +111,20 @@ pub(super) fn scan_words(chunks: u64, scan_group: u32) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::device::stage::LAUNCHES;
+
+    type Launch = (Stage, Kernel);
+
+    const STEP1: Launch = (Stage::Step1, Kernel::Trace);
+    const STEP2A: Launch = (Stage::Step2a, Kernel::Check);
+    const STEP2C: Launch = (Stage::Step2c, Kernel::Trace);
+    const STEP3A: Launch = (Stage::Step3a, Kernel::Check);
+    const STEP3B_SCATTER: Launch = (Stage::Step3b, Kernel::PackScatter);
+    const MARK: Launch = (Stage::Step4, Kernel::CorrectMark);
+    const COUNT: Launch = (Stage::Step4, Kernel::CorrectCount);
+    const SCAN: Launch = (Stage::Step4, Kernel::PackScan);
+    const TAIL: Launch = (Stage::Step4, Kernel::CorrectTail);
+    const SWEEP: Launch = (Stage::Step4, Kernel::CorrectSweep);
 
     fn frame(width: u32, height: u32) -> FrameParams {
         let (phase_width, phase_height) = (width.div_ceil(2), height.div_ceil(2));
@@ -122,8 +142,8 @@ mod tests {
     }
 
     /// What the launch lacks, and how much it wants.
-    fn lacks(kernel: Kernel, step: StepParams, sizes: &BufferSizes) -> Option<(&'static str, u64)> {
-        match check_launch(kernel, &step, &frame(64, 48), sizes) {
+    fn lacks((stage, kernel): Launch, step: StepParams, sizes: &BufferSizes) -> Option<(&'static str, u64)> {
+        match check_launch(stage, kernel, &step, &frame(64, 48), sizes) {
             Err(Error::LaunchBeyondBuffer { what, wanted, have, .. }) => {
                 assert!(wanted > have);
                 Some((what, wanted))
@@ -146,13 +166,13 @@ mod tests {
             flags: STEP_STORE,
             ..bytemuck::Zeroable::zeroed()
         };
-        for kernel in Kernel::ALL {
+        for (stage, kernel, label) in LAUNCHES {
             let step = match kernel {
-                Kernel::Step4Sweep => StepParams { item_count: 48, ..step },
-                Kernel::Step2bScan | Kernel::Step3bScan | Kernel::Step4Scan => StepParams { item_count: 96, ..step },
+                Kernel::CorrectSweep => StepParams { item_count: 48, ..step },
+                Kernel::PackScan => StepParams { item_count: 96, ..step },
                 _ => step,
             };
-            assert_eq!(lacks(kernel, step, &fits), None, "{}", kernel.name());
+            assert_eq!(lacks((stage, kernel), step, &fits), None, "{label}");
         }
         let less = |change: fn(&mut BufferSizes)| {
             let mut sizes = fits;
@@ -160,30 +180,30 @@ mod tests {
             sizes
         };
         let attributes = less(|sizes| sizes.attributes -= 1);
-        assert_eq!(lacks(Kernel::Step2a, step, &attributes), Some(("words of attributes", 12 * u64::from(pixels))));
-        assert_eq!(lacks(Kernel::Step1, StepParams { flags: 0, ..step }, &attributes), None);
-        assert_eq!(lacks(Kernel::Step1, step, &less(|s| s.color -= 1)), Some(("words of colour", u64::from(pixels))));
-        let counters = lacks(Kernel::Step2c, step, &less(|sizes| sizes.counters -= 1));
+        assert_eq!(lacks(STEP2A, step, &attributes), Some(("words of attributes", 12 * u64::from(pixels))));
+        assert_eq!(lacks(STEP1, StepParams { flags: 0, ..step }, &attributes), None);
+        assert_eq!(lacks(STEP1, step, &less(|s| s.color -= 1)), Some(("words of colour", u64::from(pixels))));
+        let counters = lacks(STEP2C, step, &less(|sizes| sizes.counters -= 1));
         assert_eq!(counters, Some(("words of counters", 6 * u64::from(pixels))));
         let wide = StepParams { grid_width: 65, ..step };
-        assert_eq!(lacks(Kernel::Step3a, wide, &fits), Some(("columns", 65)));
-        assert_eq!(lacks(Kernel::Step2a, StepParams { origin_y: 1, ..step }, &fits), Some(("rows", 49)));
+        assert_eq!(lacks(STEP3A, wide, &fits), Some(("columns", 65)));
+        assert_eq!(lacks(STEP2A, StepParams { origin_y: 1, ..step }, &fits), Some(("rows", 49)));
         let behind = StepParams { list_offset: 1, ..step };
-        assert_eq!(lacks(Kernel::Step2c, behind, &fits), Some(("list entries", u64::from(pixels) + 1)));
+        assert_eq!(lacks(STEP2C, behind, &fits), Some(("list entries", u64::from(pixels) + 1)));
         let source = StepParams { source_offset: pixels, item_count: 5, flags: STEP_BRIDGE, ..step };
-        assert_eq!(lacks(Kernel::Step4Mark, source, &fits), Some(("list entries", u64::from(pixels) + 1)));
+        assert_eq!(lacks(MARK, source, &fits), Some(("list entries", u64::from(pixels) + 1)));
         let scatter = StepParams { item_count: 32, list_end: pixels + 7, ..step };
-        assert_eq!(lacks(Kernel::Step3bScatter, scatter, &fits), Some(("list entries", u64::from(pixels) + 7)));
-        assert_eq!(lacks(Kernel::Step4Tail, scatter, &fits), Some(("list entries", u64::from(pixels) + 7)));
+        assert_eq!(lacks(STEP3B_SCATTER, scatter, &fits), Some(("list entries", u64::from(pixels) + 7)));
+        assert_eq!(lacks(TAIL, scatter, &fits), Some(("list entries", u64::from(pixels) + 7)));
         // What corrupted the heap once: five items for each of up to 15/16 of the pixels.
         let first_round = StepParams { item_count: 5 * pixels, flags: STEP_BRIDGE, ..step };
-        assert_eq!(lacks(Kernel::Step4Count, first_round, &fits), None);
+        assert_eq!(lacks(COUNT, first_round, &fits), None);
         let small = less(|sizes| sizes.masks = 4 * 64 * 48 / 32);
-        assert_eq!(lacks(Kernel::Step4Count, first_round, &small), Some(("mask words", 480)));
+        assert_eq!(lacks(COUNT, first_round, &small), Some(("mask words", 480)));
         let level = StepParams { item_count: 480, sums_offset: 10, ..step };
-        assert!(lacks(Kernel::Step4Scan, level, &BufferSizes { sums: 497, ..fits }).is_some());
-        assert!(lacks(Kernel::Step4Scan, level, &BufferSizes { sums: 498, ..fits }).is_none());
-        assert!(lacks(Kernel::Step4Sweep, StepParams { item_count: 65, ..step }, &fits).is_some());
+        assert!(lacks(SCAN, level, &BufferSizes { sums: 497, ..fits }).is_some());
+        assert!(lacks(SCAN, level, &BufferSizes { sums: 498, ..fits }).is_none());
+        assert!(lacks(SWEEP, StepParams { item_count: 65, ..step }, &fits).is_some());
     }
 
     #[test]

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! The steps of the method and the kernels that they are made of.
+//! The steps of the method, the kernels that they launch, and the programs that these are compiled in.
 //!
-//! A step has one name everywhere: the paper's, the kernel file's, the twin's, the enum variant's, the profiler's.
+//! A step has one name everywhere: the paper's, the enum variant's, the profiler's. Steps share kernels: a launch names
+//! both.
 
 /// A step of the method (paper, Steps I to III-c, and the post-correction as step 4).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -50,6 +51,53 @@ impl Stage {
             Stage::Step4 => "step4",
         }
     }
+
+    /// The kernels that it launches.
+    pub fn kernels(self) -> impl Iterator<Item = Kernel> {
+        LAUNCHES.into_iter().filter(move |(stage, ..)| *stage == self).map(|(_, kernel, _)| kernel)
+    }
+}
+
+/// A program: the kernels of one file of `kernels/`, compiled together when one of them is first launched.
+///
+/// The ray tree, most of what there is to compile, is in [`Program::Trace`] and in the two programs that few frames need.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Program {
+    /// The ray tree.
+    Trace,
+    /// Similarity checks and interpolation.
+    Check,
+    /// Packing of a grid's pixels; the prefix scan.
+    Pack,
+    /// Which pixels post-correction traces.
+    Correct,
+    /// Whole rounds of post-correction in one launch; only where launches are dear.
+    CorrectTail,
+    /// The paper's variant of post-correction.
+    CorrectSweep,
+}
+
+impl Program {
+    /// All programs.
+    pub const ALL: [Program; 6] =
+        [Program::Trace, Program::Check, Program::Pack, Program::Correct, Program::CorrectTail, Program::CorrectSweep];
+
+    /// The name of its file in `kernels/`, without `.cl`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Program::Trace => "trace",
+            Program::Check => "check",
+            Program::Pack => "pack",
+            Program::Correct => "correct",
+            Program::CorrectTail => "correct_tail",
+            Program::CorrectSweep => "correct_sweep",
+        }
+    }
+
+    /// Its kernels.
+    pub fn kernels(self) -> impl Iterator<Item = Kernel> {
+        Kernel::ALL.into_iter().filter(move |kernel| kernel.program() == self)
+    }
 }
 
 /// How many work-items a kernel is launched with, and what one of them is.
@@ -67,115 +115,105 @@ pub enum Items {
     OneGroup,
 }
 
-/// A kernel: an entry point of its stage's file.
+/// A kernel: an entry point of a program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[allow(missing_docs)] // one per entry point; the kernel files document them
 pub enum Kernel {
-    Step1,
-    Step2a,
-    Step2bCount,
-    Step2bScan,
-    Step2bScatter,
-    Step2c,
-    Step3a,
-    Step3bCount,
-    Step3bScan,
-    Step3bScatter,
-    Step3c,
-    Step4Mark,
-    Step4Count,
-    Step4Scan,
-    Step4Scatter,
-    Step4Trace,
-    Step4Tail,
-    Step4Sweep,
+    Trace,
+    Check,
+    PackCount,
+    PackScan,
+    PackScatter,
+    CorrectMark,
+    CorrectCount,
+    CorrectScatter,
+    CorrectTail,
+    CorrectSweep,
 }
 
 impl Kernel {
     /// All kernels in the order of a frame.
-    pub const ALL: [Kernel; 18] = [
-        Kernel::Step1,
-        Kernel::Step2a,
-        Kernel::Step2bCount,
-        Kernel::Step2bScan,
-        Kernel::Step2bScatter,
-        Kernel::Step2c,
-        Kernel::Step3a,
-        Kernel::Step3bCount,
-        Kernel::Step3bScan,
-        Kernel::Step3bScatter,
-        Kernel::Step3c,
-        Kernel::Step4Mark,
-        Kernel::Step4Count,
-        Kernel::Step4Scan,
-        Kernel::Step4Scatter,
-        Kernel::Step4Trace,
-        Kernel::Step4Tail,
-        Kernel::Step4Sweep,
+    pub const ALL: [Kernel; 10] = [
+        Kernel::Trace,
+        Kernel::Check,
+        Kernel::PackCount,
+        Kernel::PackScan,
+        Kernel::PackScatter,
+        Kernel::CorrectMark,
+        Kernel::CorrectCount,
+        Kernel::CorrectScatter,
+        Kernel::CorrectTail,
+        Kernel::CorrectSweep,
     ];
 
     /// The entry point's name in the kernel file.
     pub fn name(self) -> &'static str {
         match self {
-            Kernel::Step1 => "step1",
-            Kernel::Step2a => "step2a",
-            Kernel::Step2bCount => "step2b_count",
-            Kernel::Step2bScan => "step2b_scan",
-            Kernel::Step2bScatter => "step2b_scatter",
-            Kernel::Step2c => "step2c",
-            Kernel::Step3a => "step3a",
-            Kernel::Step3bCount => "step3b_count",
-            Kernel::Step3bScan => "step3b_scan",
-            Kernel::Step3bScatter => "step3b_scatter",
-            Kernel::Step3c => "step3c",
-            Kernel::Step4Mark => "step4_mark",
-            Kernel::Step4Count => "step4_count",
-            Kernel::Step4Scan => "step4_scan",
-            Kernel::Step4Scatter => "step4_scatter",
-            Kernel::Step4Trace => "step4_trace",
-            Kernel::Step4Tail => "step4_tail",
-            Kernel::Step4Sweep => "step4_sweep",
+            Kernel::Trace => "trace",
+            Kernel::Check => "check",
+            Kernel::PackCount => "pack_count",
+            Kernel::PackScan => "pack_scan",
+            Kernel::PackScatter => "pack_scatter",
+            Kernel::CorrectMark => "correct_mark",
+            Kernel::CorrectCount => "correct_count",
+            Kernel::CorrectScatter => "correct_scatter",
+            Kernel::CorrectTail => "correct_tail",
+            Kernel::CorrectSweep => "correct_sweep",
         }
     }
 
-    /// The stage that the kernel belongs to.
-    pub fn stage(self) -> Stage {
+    /// The program that the kernel is compiled in.
+    pub fn program(self) -> Program {
         match self {
-            Kernel::Step1 => Stage::Step1,
-            Kernel::Step2a => Stage::Step2a,
-            Kernel::Step2bCount | Kernel::Step2bScan | Kernel::Step2bScatter => Stage::Step2b,
-            Kernel::Step2c => Stage::Step2c,
-            Kernel::Step3a => Stage::Step3a,
-            Kernel::Step3bCount | Kernel::Step3bScan | Kernel::Step3bScatter => Stage::Step3b,
-            Kernel::Step3c => Stage::Step3c,
-            Kernel::Step4Mark
-            | Kernel::Step4Count
-            | Kernel::Step4Scan
-            | Kernel::Step4Scatter
-            | Kernel::Step4Trace
-            | Kernel::Step4Tail
-            | Kernel::Step4Sweep => Stage::Step4,
+            Kernel::Trace => Program::Trace,
+            Kernel::Check => Program::Check,
+            Kernel::PackCount | Kernel::PackScan | Kernel::PackScatter => Program::Pack,
+            Kernel::CorrectMark | Kernel::CorrectCount | Kernel::CorrectScatter => Program::Correct,
+            Kernel::CorrectTail => Program::CorrectTail,
+            Kernel::CorrectSweep => Program::CorrectSweep,
         }
     }
 
-    /// What its work-items are.
-    pub fn items(self) -> Items {
+    /// What its work-items are when `stage` launches it: `trace` covers a grid in step1, a list in all other steps.
+    pub fn items(self, stage: Stage) -> Items {
         match self {
-            Kernel::Step1 | Kernel::Step2a | Kernel::Step3a => Items::Grid,
-            Kernel::Step2c | Kernel::Step3c | Kernel::Step4Mark | Kernel::Step4Trace | Kernel::Step4Sweep => {
-                Items::List
-            }
-            Kernel::Step2bCount
-            | Kernel::Step3bCount
-            | Kernel::Step4Count
-            | Kernel::Step2bScatter
-            | Kernel::Step3bScatter
-            | Kernel::Step4Scatter => Items::Chunks,
-            Kernel::Step2bScan | Kernel::Step3bScan | Kernel::Step4Scan => Items::Groups,
-            Kernel::Step4Tail => Items::OneGroup,
+            Kernel::Trace if stage == Stage::Step1 => Items::Grid,
+            Kernel::Check => Items::Grid,
+            Kernel::Trace | Kernel::CorrectMark | Kernel::CorrectSweep => Items::List,
+            Kernel::PackCount | Kernel::PackScatter | Kernel::CorrectCount | Kernel::CorrectScatter => Items::Chunks,
+            Kernel::PackScan => Items::Groups,
+            Kernel::CorrectTail => Items::OneGroup,
         }
+    }
+
+    /// The label of its launches by `stage`: under it they are timed, cut into slices and named in errors.
+    pub fn label(self, stage: Stage) -> &'static str {
+        let launch = LAUNCHES.iter().find(|(of, kernel, _)| (*of, *kernel) == (stage, self));
+        launch.map_or(self.name(), |(.., label)| label)
     }
 }
+
+/// Every launch of the method: the stage, its kernel, and the label of both.
+pub const LAUNCHES: [(Stage, Kernel, &str); 18] = [
+    (Stage::Step1, Kernel::Trace, "step1/trace"),
+    (Stage::Step2a, Kernel::Check, "step2a/check"),
+    (Stage::Step2b, Kernel::PackCount, "step2b/pack_count"),
+    (Stage::Step2b, Kernel::PackScan, "step2b/pack_scan"),
+    (Stage::Step2b, Kernel::PackScatter, "step2b/pack_scatter"),
+    (Stage::Step2c, Kernel::Trace, "step2c/trace"),
+    (Stage::Step3a, Kernel::Check, "step3a/check"),
+    (Stage::Step3b, Kernel::PackCount, "step3b/pack_count"),
+    (Stage::Step3b, Kernel::PackScan, "step3b/pack_scan"),
+    (Stage::Step3b, Kernel::PackScatter, "step3b/pack_scatter"),
+    (Stage::Step3c, Kernel::Trace, "step3c/trace"),
+    (Stage::Step4, Kernel::CorrectMark, "step4/correct_mark"),
+    (Stage::Step4, Kernel::CorrectCount, "step4/correct_count"),
+    (Stage::Step4, Kernel::PackScan, "step4/pack_scan"),
+    (Stage::Step4, Kernel::CorrectScatter, "step4/correct_scatter"),
+    (Stage::Step4, Kernel::Trace, "step4/trace"),
+    (Stage::Step4, Kernel::CorrectTail, "step4/correct_tail"),
+    (Stage::Step4, Kernel::CorrectSweep, "step4/correct_sweep"),
+];
 
 /// What a kernel argument is bound to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -207,17 +245,31 @@ impl Kernel {
     pub fn bindings(self) -> &'static [Binding] {
         use Binding::*;
         match self {
-            Kernel::Step1 | Kernel::Step2a | Kernel::Step3a | Kernel::Step4Sweep => {
-                &[Scene, Step, Attributes, Color, Counters]
-            }
-            Kernel::Step2c | Kernel::Step3c | Kernel::Step4Trace => &[Scene, Step, List, Attributes, Color, Counters],
-            Kernel::Step2bCount | Kernel::Step3bCount => &[Frame, Step, Attributes, Masks, Sums],
-            Kernel::Step2bScan | Kernel::Step3bScan | Kernel::Step4Scan => &[Step, Sums, Scratch],
-            Kernel::Step2bScatter | Kernel::Step3bScatter => &[Step, Masks, Sums, List],
-            Kernel::Step4Tail => &[Scene, Step, Attributes, Color, Counters, List, Sums, Scratch],
-            Kernel::Step4Mark => &[Frame, Step, Attributes, List, Color],
-            Kernel::Step4Count => &[Frame, Step, Attributes, Color, List, Masks, Sums],
-            Kernel::Step4Scatter => &[Frame, Step, Attributes, Color, Masks, Sums, List, List],
+            Kernel::Trace => &[Scene, Step, List, Attributes, Color, Counters],
+            Kernel::Check | Kernel::CorrectSweep => &[Scene, Step, Attributes, Color, Counters],
+            Kernel::PackCount => &[Frame, Step, Attributes, Masks, Sums],
+            Kernel::PackScan => &[Step, Sums, Scratch],
+            Kernel::PackScatter => &[Step, Masks, Sums, List],
+            Kernel::CorrectMark => &[Frame, Step, Attributes, List, Color],
+            Kernel::CorrectCount => &[Frame, Step, Attributes, List, Masks, Sums],
+            Kernel::CorrectScatter => &[Frame, Step, Attributes, Masks, Sums, List, List],
+            Kernel::CorrectTail => &[Scene, Step, Attributes, Color, Counters, List, Sums, Scratch],
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_launch_has_its_own_label_and_every_kernel_a_launch() {
+        for (stage, kernel, label) in LAUNCHES {
+            assert_eq!(label, format!("{}/{}", stage.name(), kernel.name()));
+            assert_eq!(kernel.label(stage), label);
+        }
+        assert!(Kernel::ALL.into_iter().all(|kernel| LAUNCHES.iter().any(|(_, of, _)| *of == kernel)));
+        assert!(Stage::ALL.into_iter().all(|stage| stage.kernels().next().is_some()));
+        assert_eq!(Program::ALL.map(|program| program.kernels().count()).iter().sum::<usize>(), Kernel::ALL.len());
     }
 }

@@ -36,7 +36,7 @@ shared_constants! {
     PLANE_SHADOW = 9;
     /// Attribute plane: pixel class (`CLASS_*`) in the low bits, fail mask (`FAIL_*`) above.
     PLANE_CLASS = 10;
-    /// Attribute plane: step4's claims, the lowest item that wants the pixel.
+    /// Attribute plane: step4's claims, the lowest item that wants the pixel; in sources, the pixel across a gap.
     PLANE_CLAIM = 11;
     /// Number of attribute planes: 48 bytes a sample.
     PLANE_COUNT = 12;
@@ -121,11 +121,11 @@ shared_constants! {
     /// How many columns to either side step4 looks for the other part of something thin.
     BRIDGE_REACH = 16;
 
-    /// A round of step4 with at most this many sources is left to step4_tail: a wave's worth.
+    /// A round of step4 with at most this many sources is left to `correct_tail`: a wave's worth.
     TAIL_SOURCES = 64;
-    /// Rounds in one launch of step4_tail; what it takes must stay below a slice.
+    /// Rounds in one launch of `correct_tail`; what it takes must stay below a slice.
     TAIL_ROUNDS = 16;
-    /// What step4_tail leaves in the sums buffer: the first list entry of the next round's sources.
+    /// What `correct_tail` leaves in the sums buffer: the first list entry of the next round's sources.
     TAIL_SUM_SOURCES = 0;
     /// The end of the list.
     TAIL_SUM_LIST = 1;

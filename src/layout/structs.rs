@@ -62,7 +62,7 @@ pub struct StepParams {
     pub lenient_tests: u32,
     pub t_visible: u32,
     pub list_end: u32,
-    pub pad: u32,
+    pub pixel_class: u32,
 }
 const _: () = assert!(size_of::<StepParams>() == 96);
 

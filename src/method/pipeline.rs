@@ -3,7 +3,7 @@
 //! memory is drawn window by window ([`crate::method::bands`]).
 
 use crate::device::backend::{Backend, FrameBuffer, most_listed_pixels};
-use crate::device::stage::Kernel;
+use crate::device::stage::{Kernel, Stage};
 use crate::device::twin::pack::grid_items;
 use crate::error::Result;
 use crate::layout::*;
@@ -42,33 +42,36 @@ impl PixelCounts {
 
 /// A class of adaptive pixels: its grid, and where the two references of each pixel lie.
 struct AdaptiveGrid {
-    check: Kernel,
-    pack: PackKernels,
-    trace: Kernel,
+    stages: AdaptiveStages,
     params: StepParams,
 }
 
-struct PackKernels {
+/// The stages that check, pack and trace a class of adaptive pixels.
+#[derive(Clone, Copy)]
+struct AdaptiveStages {
+    check: Stage,
+    pack: Stage,
+    trace: Stage,
+}
+
+const A1: AdaptiveStages = AdaptiveStages { check: Stage::Step2a, pack: Stage::Step2b, trace: Stage::Step2c };
+const A2: AdaptiveStages = AdaptiveStages { check: Stage::Step3a, pack: Stage::Step3b, trace: Stage::Step3c };
+
+/// A packing: the stage, and the kernels that count and scatter its items.
+struct Packing {
+    stage: Stage,
     count: Kernel,
-    scan: Kernel,
     scatter: Kernel,
 }
 
-const STEP2B: PackKernels =
-    PackKernels { count: Kernel::Step2bCount, scan: Kernel::Step2bScan, scatter: Kernel::Step2bScatter };
-const STEP3B: PackKernels =
-    PackKernels { count: Kernel::Step3bCount, scan: Kernel::Step3bScan, scatter: Kernel::Step3bScatter };
-const STEP4: PackKernels =
-    PackKernels { count: Kernel::Step4Count, scan: Kernel::Step4Scan, scatter: Kernel::Step4Scatter };
-
-/// Traces every pixel of a window: step1's kernel at stride 1. `store` keeps the attributes of all pixels.
+/// Traces every pixel of a window: step1 at stride 1, by the same kernel. `store` keeps the attributes of all pixels.
 ///
 /// # Errors
 /// Whatever the back end reports.
 pub fn full_frame(backend: &mut dyn Backend, frame: &FrameParams, store: bool) -> Result<PixelCounts> {
     let flags = if store { STEP_STORE } else { 0 };
-    let step = StepParams { flags, ..grid(frame, (0, 0), (1, 1)) };
-    backend.run(Kernel::Step1, &step)?;
+    let step = StepParams { flags, pixel_class: CLASS_BASE, ..grid(frame, (0, 0), (1, 1)) };
+    backend.run(Stage::Step1, Kernel::Trace, &step)?;
     Ok(PixelCounts::new(frame, 0, 0))
 }
 
@@ -100,17 +103,18 @@ pub fn adaptive_window(
 ) -> Result<Listed> {
     let block = frame.block;
     let base = grid(frame, (0, 0), (block, block));
-    backend.run(Kernel::Step1, &StepParams { flags: STEP_STORE, ..base })?;
+    let base = StepParams { flags: STEP_STORE, pixel_class: CLASS_BASE, ..base };
+    backend.run(Stage::Step1, Kernel::Trace, &base)?;
 
     let given = list_given(backend, given)?;
     let mut listed = given.len();
     let mut stride = block;
     while stride >= 2 {
         for class in adaptive_grids(frame, stride, options, extent) {
-            backend.run(class.check, &class.params)?;
+            backend.run(class.stages.check, Kernel::Check, &class.params)?;
             let count = pack_grid(backend, &class, listed)?;
-            let list = StepParams { list_offset: listed, item_count: count, ..class.params };
-            run_list(backend, class.trace, &list)?;
+            let list = StepParams { list_offset: listed, item_count: count, pixel_class: CLASS_TRACED, ..class.params };
+            trace_list(backend, class.stages.trace, &list)?;
             listed += count;
         }
         stride /= 2;
@@ -196,8 +200,8 @@ fn adaptive_grids(frame: &FrameParams, stride: u32, options: &RenderOptions, ext
     let checks = |step| options.method.check_params(step, stride == 2, extent);
     let step2 = checks(StepParams { reference_dx: half, ..grid(frame, (half, 0), (stride, stride)) });
     let step3 = |left, width| checks(StepParams { reference_dy: half, ..grid(frame, (left, half), (width, stride)) });
-    let a1 = AdaptiveGrid { check: Kernel::Step2a, pack: STEP2B, trace: Kernel::Step2c, params: step2 };
-    let a2 = |params| AdaptiveGrid { check: Kernel::Step3a, pack: STEP3B, trace: Kernel::Step3c, params };
+    let a1 = AdaptiveGrid { stages: A1, params: step2 };
+    let a2 = |params| AdaptiveGrid { stages: A2, params };
     if options.method.checks.second_pairs {
         let odd = step3(half, stride);
         let odd = StepParams { flags: odd.flags | STEP_OTHER_PAIRS, ..odd };
@@ -211,19 +215,20 @@ fn adaptive_grids(frame: &FrameParams, stride: u32, options: &RenderOptions, ext
 fn pack_grid(backend: &mut dyn Backend, class: &AdaptiveGrid, list_offset: u32) -> Result<u32> {
     // Once for the pixels beside mirrors and glass, once for the others.
     let item_count = 2 * grid_items(&class.params);
-    pack(backend, &class.pack, &StepParams { item_count, list_offset, ..class.params })
+    let packing = Packing { stage: class.stages.pack, count: Kernel::PackCount, scatter: Kernel::PackScatter };
+    pack(backend, &packing, &StepParams { item_count, list_offset, ..class.params })
 }
 
 /// Packs the wanted ones of `item_count` items by count, scan and scatter; returns how many there are.
-fn pack(backend: &mut dyn Backend, kernels: &PackKernels, step: &StepParams) -> Result<u32> {
+fn pack(backend: &mut dyn Backend, packing: &Packing, step: &StepParams) -> Result<u32> {
     if step.item_count == 0 {
         return Ok(0);
     }
     let step = StepParams { scan_group: backend.scan_group(), ..*step };
-    backend.run(kernels.count, &step)?;
+    backend.run(packing.stage, packing.count, &step)?;
     let (mut level, mut sums_offset) = (step.item_count.div_ceil(32), 0);
     loop {
-        backend.run(kernels.scan, &StepParams { item_count: level, sums_offset, ..step })?;
+        backend.run(packing.stage, Kernel::PackScan, &StepParams { item_count: level, sums_offset, ..step })?;
         sums_offset += level;
         level = level.div_ceil(step.scan_group);
         if level == 1 {
@@ -232,13 +237,14 @@ fn pack(backend: &mut dyn Backend, kernels: &PackKernels, step: &StepParams) -> 
     }
     let count = backend.read_sum(sums_offset)?;
     if count > 0 {
-        backend.run(kernels.scatter, &StepParams { list_end: step.list_offset + count, ..step })?;
+        let step = StepParams { list_end: step.list_offset + count, ..step };
+        backend.run(packing.stage, packing.scatter, &step)?;
     }
     Ok(count)
 }
 
-fn run_list(backend: &mut dyn Backend, kernel: Kernel, step: &StepParams) -> Result<()> {
-    if step.item_count == 0 { Ok(()) } else { backend.run(kernel, step) }
+fn trace_list(backend: &mut dyn Backend, stage: Stage, step: &StepParams) -> Result<()> {
+    if step.item_count == 0 { Ok(()) } else { backend.run(stage, Kernel::Trace, step) }
 }
 
 /// step4: spreads from the pixels listed so far; returns how many more pixels it fired at.
@@ -251,7 +257,7 @@ fn correct(
 ) -> Result<u32> {
     let Some(step) = options.method.correction_params() else { return Ok(0) };
     // A plan's windows are such that every list address is a 32-bit number.
-    let step = StepParams { list_end: most_listed_pixels(frame) as u32, ..step };
+    let step = StepParams { list_end: most_listed_pixels(frame) as u32, pixel_class: CLASS_CORRECTED, ..step };
     match options.method.correction {
         Correction::Off => Ok(0),
         Correction::Converged { bridges, .. } => correct_converged(backend, &step, bridges, given, listed),
@@ -268,22 +274,22 @@ fn correct_converged(
     listed: u32,
 ) -> Result<u32> {
     let settle = StepParams { item_count: given.settled, flags: step.flags | STEP_SETTLE, ..*step };
-    run_list(backend, Kernel::Step4Trace, &settle)?;
+    trace_list(backend, Stage::Step4, &settle)?;
     let mut list_offset = listed;
-    // Traced pixels are asked first: what edges and lines pass by, and where gaps are, is seen before any correction.
+    // Traced pixels come first: which edges and lines miss a neighbour, and where gaps are, is seen before any correction.
     if given.first_time {
         let first = StepParams { flags: step.flags | if bridges { STEP_BRIDGE } else { 0 }, ..*step };
         list_offset += fire_from(backend, &first, given.len(), listed - given.len(), list_offset)?;
     }
     if given.fired > 0 {
         let fire = StepParams { list_offset: given.settled, item_count: given.fired, ..*step };
-        backend.run(Kernel::Step4Trace, &fire)?;
+        trace_list(backend, Stage::Step4, &fire)?;
         list_offset += fire_from(backend, step, given.settled, given.fired, list_offset)?;
     }
     let mut source_offset = listed;
     while list_offset > source_offset {
         let sources = list_offset - source_offset;
-        let followed = if sources <= TAIL_SOURCES {
+        let followed = if sources <= TAIL_SOURCES && backend.prefers_few_launches() {
             follow_tail(backend, step, source_offset, sources, list_offset)?
         } else {
             (source_offset, list_offset)
@@ -310,9 +316,10 @@ fn fire_from(
     }
     let ways = if step.flags & STEP_BRIDGE != 0 { 5 } else { 4 };
     let round = StepParams { source_offset, list_offset, item_count: ways * sources, ..*step };
-    backend.run(Kernel::Step4Mark, &round)?;
-    let count = pack(backend, &STEP4, &round)?;
-    run_list(backend, Kernel::Step4Trace, &StepParams { item_count: count, ..round })?;
+    backend.run(Stage::Step4, Kernel::CorrectMark, &round)?;
+    let packing = Packing { stage: Stage::Step4, count: Kernel::CorrectCount, scatter: Kernel::CorrectScatter };
+    let count = pack(backend, &packing, &round)?;
+    trace_list(backend, Stage::Step4, &StepParams { item_count: count, ..round })?;
     Ok(count)
 }
 
@@ -326,7 +333,7 @@ fn follow_tail(
 ) -> Result<(u32, u32)> {
     let scan_group = backend.scan_group();
     let tail = StepParams { source_offset, list_offset, item_count: 4 * sources, scan_group, ..*step };
-    backend.run(Kernel::Step4Tail, &tail)?;
+    backend.run(Stage::Step4, Kernel::CorrectTail, &tail)?;
     let sums = backend.read(FrameBuffer::Sums, 0..TAIL_SUM_ENDS as usize)?;
     let sum = |at: u32| sums.get(at as usize).copied().unwrap_or(list_offset);
     Ok((sum(TAIL_SUM_SOURCES), sum(TAIL_SUM_LIST)))
@@ -334,8 +341,8 @@ fn follow_tail(
 
 /// Each row there and back, then each column.
 fn correct_by_sweeps(backend: &mut dyn Backend, frame: &FrameParams, step: &StepParams) -> Result<u32> {
-    backend.run(Kernel::Step4Sweep, &StepParams { step_x: 1, item_count: frame.height, ..*step })?;
-    backend.run(Kernel::Step4Sweep, &StepParams { step_y: 1, item_count: frame.width, ..*step })?;
+    backend.run(Stage::Step4, Kernel::CorrectSweep, &StepParams { step_x: 1, item_count: frame.height, ..*step })?;
+    backend.run(Stage::Step4, Kernel::CorrectSweep, &StepParams { step_y: 1, item_count: frame.width, ..*step })?;
     // A sweep lists nothing: its rays are counted from the classes.
     let pitch = frame.plane_pitch as usize;
     let at = PLANE_CLASS as usize * pitch;

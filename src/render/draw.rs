@@ -99,8 +99,8 @@ impl Job<'_> {
         };
         let frame_ms = started.elapsed().as_secs_f64() * 1e3;
         let mut stages_ms = [0.0; Stage::ALL.len()];
-        for (kernel, ms) in backend.take_timings()? {
-            stages_ms[kernel.stage() as usize] += ms;
+        for (stage, ms) in backend.take_timings()? {
+            stages_ms[stage as usize] += ms;
         }
         let mut stats = FrameStats { frame_ms, stages_ms, pixels: counts, ..FrameStats::default() };
         if keep.counters {

@@ -31,25 +31,25 @@ const HEIGHT: u32 = 76;
 /// then put in the checksum that `rarefy selftest --device cpu` prints.
 const TWIN_CHECKSUM: u64 = 0xe6b1_b149_6ddd_c26d;
 
-/// A change that breaks `stage` on purpose, for negative controls.
+/// A change that breaks `stage` on purpose, for negative controls. Stages that share a kernel differ in the parameters of
+/// their launches: step2 has its references in a row, step3 in a column.
 pub fn breaking_mutation(stage: Stage) -> Mutation {
+    const GRID_ROW: &str = "step.step_y * gy";
+    const PACKED: &str = "#define PACK_PIXEL(i) grid_item_pixel(&step, i)";
+    const ENTRY: &str = "list[step.list_offset + gx]";
     let (file, from, to) = match stage {
-        Stage::Step1 => ("step1.cl", "step.step_x * gx", "step.step_x * (gx & ~1u)"),
-        Stage::Step2a => ("step2a.cl", "step.step_y * gy", "step.step_y * (gy & ~1u)"),
-        Stage::Step2b => (
-            "step2b.cl",
-            "#define PACK_PIXEL(i) grid_item_pixel(&step, i)",
-            "#define PACK_PIXEL(i) grid_item_pixel(&step, i ^ 1u)",
-        ),
-        Stage::Step2c => ("step2c.cl", "list[step.list_offset + item]", "list[step.list_offset]"),
-        Stage::Step3a => ("step3a.cl", "step.step_y * gy", "step.step_y * (gy & ~1u)"),
-        Stage::Step3b => (
-            "step3b.cl",
-            "#define PACK_PIXEL(i) grid_item_pixel(&step, i)",
-            "#define PACK_PIXEL(i) grid_item_pixel(&step, i ^ 1u)",
-        ),
-        Stage::Step3c => ("step3c.cl", "list[step.list_offset + item]", "list[step.list_offset]"),
-        Stage::Step4 => ("step4.cl", "case 0u: return x > 0u", "case 0u: return x > 1000u"),
+        Stage::Step1 => ("trace.cl", GRID_ROW, "step.step_y * (gy & ~1u)"),
+        Stage::Step2a => ("check.cl", GRID_ROW, "step.step_y * (step.reference_dx ? gy & ~1u : gy)"),
+        Stage::Step2b => {
+            ("pack.cl", PACKED, "#define PACK_PIXEL(i) grid_item_pixel(&step, step.reference_dx ? (i) ^ 1u : (i))")
+        }
+        Stage::Step2c => ("trace.cl", ENTRY, "list[step.list_offset + (step.reference_dx ? 0u : gx)]"),
+        Stage::Step3a => ("check.cl", GRID_ROW, "step.step_y * (step.reference_dy ? gy & ~1u : gy)"),
+        Stage::Step3b => {
+            ("pack.cl", PACKED, "#define PACK_PIXEL(i) grid_item_pixel(&step, step.reference_dy ? (i) ^ 1u : (i))")
+        }
+        Stage::Step3c => ("trace.cl", ENTRY, "list[step.list_offset + (step.reference_dy ? 0u : gx)]"),
+        Stage::Step4 => ("common/correction.clh", "case 0u: return x > 0u", "case 0u: return x > 1000u"),
     };
     Mutation { file: file.into(), from: from.into(), to: to.into() }
 }

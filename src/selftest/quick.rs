@@ -12,7 +12,7 @@ use crate::device::backend::{Backend, BufferSizes};
 use crate::device::hooks::parity::{KernelParity, ParityBackend};
 use crate::device::opencl::executor::OpenClBackend;
 use crate::device::profiles::Profile;
-use crate::device::stage::Kernel;
+use crate::device::stage::{Kernel, LAUNCHES};
 use crate::device::twin::executor::TwinBackend;
 use crate::error::{Error, Result};
 use crate::layout;
@@ -37,7 +37,7 @@ const WRONG_LIMIT: f64 = 0.005;
 /// The result of one check.
 #[derive(Debug, Clone)]
 pub struct Check {
-    /// What was checked: a kernel's name, or `layout`, `twin`.
+    /// What was checked: a stage and its kernel, or `layout`, `twin`.
     pub name: String,
     /// Whether it passed.
     pub passed: bool,
@@ -133,11 +133,11 @@ fn read_verdict(device: &str, text: &str) -> Option<Result<()>> {
     Some(Err(Error::SelfTest { device: device.into(), stage: stage.into(), message: message.into() }))
 }
 
-/// The kernel that an error of a call names between backquotes.
+/// The launch that an error of a call names between backquotes.
 fn stage_in(message: &str) -> String {
     let named = message.split('`').nth(1).unwrap_or_default();
-    let known = Kernel::ALL.into_iter().find(|kernel| kernel.name() == named);
-    known.map_or("calls", Kernel::name).into()
+    let known = LAUNCHES.iter().find(|(.., label)| *label == named);
+    known.map_or("calls", |(.., label)| label).into()
 }
 
 fn test(device: &mut OpenClBackend) -> Result<SelfTest> {
@@ -146,7 +146,7 @@ fn test(device: &mut OpenClBackend) -> Result<SelfTest> {
     let options = RenderOptions { width: WIDTH, height: HEIGHT, ..RenderOptions::default() };
     let checks = device.with_scene(&buffers, |device| {
         let mut checks = vec![check_layout(&device.probe()?)];
-        let mut parity = ParityBackend::new(TwinBackend::new(Arc::clone(&buffers)), device);
+        let mut parity = ParityBackend::new(TwinBackend::new(Arc::clone(&buffers)), device).as_the_device_likes();
         run_frame(&mut parity, &scene, &buffers, &options, false)?;
         checks.extend(parity.results.iter().map(check_parity));
         Ok(checks)
@@ -189,17 +189,7 @@ pub(crate) fn check_layout(probe: &[u32]) -> Check {
 
 pub(crate) fn check_parity(result: &KernelParity) -> Check {
     // A packing or a claim is either right or wrong; rounding can only move what rays and shading compute.
-    let exact = !matches!(
-        result.kernel,
-        Kernel::Step1
-            | Kernel::Step2a
-            | Kernel::Step2c
-            | Kernel::Step3a
-            | Kernel::Step3c
-            | Kernel::Step4Trace
-            | Kernel::Step4Tail
-            | Kernel::Step4Sweep
-    );
+    let exact = !matches!(result.kernel, Kernel::Trace | Kernel::Check | Kernel::CorrectTail | Kernel::CorrectSweep);
     let limit = if exact { 0 } else { (result.words as f64 * WRONG_LIMIT) as u64 };
     let mut detail = match result.different {
         0 => format!("all {} words equal the twin's", result.words),
@@ -208,7 +198,7 @@ pub(crate) fn check_parity(result: &KernelParity) -> Check {
     if let Some((buffer, at, twin, device)) = result.first {
         detail += &format!("; first at {buffer:?}[{at}]: {device:#010x} instead of {twin:#010x}");
     }
-    Check { name: result.kernel.name().into(), passed: result.wrong <= limit, detail }
+    Check { name: result.kernel.label(result.stage).into(), passed: result.wrong <= limit, detail }
 }
 
 #[cfg(test)]
@@ -224,9 +214,9 @@ mod tests {
         let mut other = TwinBackend::new(Arc::clone(&buffers));
         let mut parity = ParityBackend::new(TwinBackend::new(Arc::clone(&buffers)), &mut other);
         run_frame(&mut parity, &scene, &buffers, &options, false).unwrap();
-        let launched: Vec<Kernel> = parity.results.iter().map(|result| result.kernel).collect();
-        for kernel in Kernel::ALL.into_iter().filter(|&kernel| kernel != Kernel::Step4Sweep) {
-            assert!(launched.contains(&kernel), "{}", kernel.name());
+        let launched: Vec<_> = parity.results.iter().map(|result| (result.stage, result.kernel)).collect();
+        for (stage, kernel, label) in LAUNCHES.into_iter().filter(|(_, kernel, _)| *kernel != Kernel::CorrectSweep) {
+            assert!(launched.contains(&(stage, kernel)), "{label}");
         }
         assert!(parity.results.iter().map(check_parity).all(|check| check.passed));
     }
@@ -243,7 +233,7 @@ mod tests {
 
     #[test]
     fn a_failing_call_names_its_kernel() {
-        assert_eq!(stage_in("running `step2c` failed: CL_OUT_OF_RESOURCES (-5)"), "step2c");
+        assert_eq!(stage_in("running `step2c/trace` failed: CL_OUT_OF_RESOURCES (-5)"), "step2c/trace");
         assert_eq!(stage_in("clFinish failed: CL_OUT_OF_RESOURCES (-5)"), "calls");
     }
 }

@@ -22,9 +22,11 @@ const BUFFERS: [FrameBuffer; 6] = [
 /// How far a float may be off, absolutely and relatively, before it counts as wrong on a device that rounds otherwise.
 const FLOAT_TOLERANCE: f32 = 2.0e-3;
 
-/// What one kernel's launches came to.
+/// What a kernel's launches by one stage came to.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct KernelParity {
+    /// The stage.
+    pub stage: Stage,
     /// The kernel.
     pub kernel: Kernel,
     /// Words compared.
@@ -44,8 +46,9 @@ pub struct ParityBackend<'a> {
     device: &'a mut dyn Backend,
     sizes: Option<BufferSizes>,
     pitch: usize,
-    only: Option<Stage>,
-    /// Results so far, one per kernel that was launched, in order of first launch.
+    only: Option<(Stage, Kernel)>,
+    as_the_device_likes: bool,
+    /// Results so far, one per stage and kernel that were launched, in order of first launch.
     pub results: Vec<KernelParity>,
 }
 
@@ -53,12 +56,26 @@ impl<'a> ParityBackend<'a> {
     /// Compares `device` with `twin`; both must hold the same scene. The twin walks as the device does.
     pub fn new(mut twin: TwinBackend, device: &'a mut dyn Backend) -> Self {
         twin.walk_by(device.traversal());
-        ParityBackend { twin, device, sizes: None, pitch: 1, only: None, results: Vec::new() }
+        ParityBackend {
+            twin,
+            device,
+            sizes: None,
+            pitch: 1,
+            only: None,
+            as_the_device_likes: false,
+            results: Vec::new(),
+        }
     }
 
-    /// Compares the launches of `stage` alone; the twin alone runs the others, and the device builds no other program.
-    pub fn only(self, stage: Stage) -> Self {
-        ParityBackend { only: Some(stage), ..self }
+    /// Compares the launches of `kernel` by `stage` alone; the twin alone runs the others, and the device builds no other
+    /// program.
+    pub fn only(self, stage: Stage, kernel: Kernel) -> Self {
+        ParityBackend { only: Some((stage, kernel)), ..self }
+    }
+
+    /// Leaves out `correct_tail` where the device's own frames do, so that it is not compiled for the comparison.
+    pub fn as_the_device_likes(self) -> Self {
+        ParityBackend { as_the_device_likes: true, ..self }
     }
 
     fn size(&self, buffer: FrameBuffer) -> usize {
@@ -101,6 +118,10 @@ impl Backend for ParityBackend<'_> {
         self.device.memory_limits()
     }
 
+    fn prefers_few_launches(&self) -> bool {
+        !self.as_the_device_likes || self.device.prefers_few_launches()
+    }
+
     fn traversal(&self) -> Traversal {
         self.device.traversal()
     }
@@ -112,17 +133,17 @@ impl Backend for ParityBackend<'_> {
         self.device.begin(frame, sizes)
     }
 
-    fn run(&mut self, kernel: Kernel, step: &StepParams) -> Result<()> {
-        if self.only.is_some_and(|stage| stage != kernel.stage()) {
-            return self.twin.run(kernel, step);
+    fn run(&mut self, stage: Stage, kernel: Kernel, step: &StepParams) -> Result<()> {
+        if self.only.is_some_and(|only| only != (stage, kernel)) {
+            return self.twin.run(stage, kernel, step);
         }
         for buffer in BUFFERS {
             let words = self.twin.read(buffer, 0..self.size(buffer))?;
             self.device.write(buffer, &words)?;
         }
-        self.twin.run(kernel, step)?;
-        self.device.run(kernel, step)?;
-        let mut result = KernelParity { kernel, words: 0, different: 0, wrong: 0, first: None };
+        self.twin.run(stage, kernel, step)?;
+        self.device.run(stage, kernel, step)?;
+        let mut result = KernelParity { stage, kernel, words: 0, different: 0, wrong: 0, first: None };
         for buffer in BUFFERS {
             let expected = self.twin.read(buffer, 0..self.size(buffer))?;
             let actual = self.device.read(buffer, 0..self.size(buffer))?;
@@ -135,7 +156,7 @@ impl Backend for ParityBackend<'_> {
                 }
             }
         }
-        match self.results.iter_mut().find(|r| r.kernel == kernel) {
+        match self.results.iter_mut().find(|r| (r.stage, r.kernel) == (stage, kernel)) {
             Some(sum) => {
                 sum.words += result.words;
                 sum.different += result.different;
@@ -159,7 +180,7 @@ impl Backend for ParityBackend<'_> {
         self.twin.write(buffer, words)
     }
 
-    fn take_timings(&mut self) -> Result<Vec<(Kernel, f64)>> {
+    fn take_timings(&mut self) -> Result<Vec<(Stage, f64)>> {
         self.device.take_timings()
     }
 

@@ -86,6 +86,10 @@ impl Backend for WatchedBackend<'_> {
         self.inner.memory_limits()
     }
 
+    fn prefers_few_launches(&self) -> bool {
+        self.inner.prefers_few_launches()
+    }
+
     fn traversal(&self) -> Traversal {
         self.inner.traversal()
     }
@@ -96,12 +100,12 @@ impl Backend for WatchedBackend<'_> {
         self.inner.begin(frame, sizes)
     }
 
-    fn run(&mut self, kernel: Kernel, step: &StepParams) -> Result<()> {
+    fn run(&mut self, stage: Stage, kernel: Kernel, step: &StepParams) -> Result<()> {
         self.monitor.check()?;
-        let part = self.part(kernel.stage());
+        let part = self.part(stage);
         self.inner.watch(&part);
-        self.inner.run(kernel, step)?;
-        if kernel == Kernel::Step1 {
+        self.inner.run(stage, kernel, step)?;
+        if stage == Stage::Step1 {
             self.preview()?;
         }
         Ok(())
@@ -119,7 +123,7 @@ impl Backend for WatchedBackend<'_> {
         self.inner.write(buffer, words)
     }
 
-    fn take_timings(&mut self) -> Result<Vec<(Kernel, f64)>> {
+    fn take_timings(&mut self) -> Result<Vec<(Stage, f64)>> {
         self.inner.take_timings()
     }
 

@@ -2,7 +2,7 @@
 //! A back end that passes everything on and remembers the launches.
 
 use crate::device::backend::{Backend, BackendInfo, BufferSizes, FrameBuffer, MemoryLimits};
-use crate::device::stage::Kernel;
+use crate::device::stage::{Kernel, Stage};
 use crate::error::Result;
 use crate::layout::{FrameParams, StepParams, TAIL_SUM_ENDS, TAIL_SUM_ROUNDS, Traversal};
 use crate::monitor::Monitor;
@@ -10,11 +10,13 @@ use crate::monitor::Monitor;
 /// A launch that was recorded.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recorded {
+    /// The stage.
+    pub stage: Stage,
     /// The kernel.
     pub kernel: Kernel,
     /// Its parameters.
     pub step: StepParams,
-    /// `step4_tail`: where the list ended after each of its rounds.
+    /// `correct_tail`: where the list ended after each of its rounds.
     pub round_ends: Vec<u32>,
 }
 
@@ -45,6 +47,11 @@ impl Backend for RecordingBackend<'_> {
         self.inner.memory_limits()
     }
 
+    /// As on a GPU, whose launches are what recordings are for, whatever records them.
+    fn prefers_few_launches(&self) -> bool {
+        true
+    }
+
     fn traversal(&self) -> Traversal {
         self.inner.traversal()
     }
@@ -53,15 +60,15 @@ impl Backend for RecordingBackend<'_> {
         self.inner.begin(frame, sizes)
     }
 
-    fn run(&mut self, kernel: Kernel, step: &StepParams) -> Result<()> {
-        self.inner.run(kernel, step)?;
+    fn run(&mut self, stage: Stage, kernel: Kernel, step: &StepParams) -> Result<()> {
+        self.inner.run(stage, kernel, step)?;
         let mut round_ends = Vec::new();
-        if kernel == Kernel::Step4Tail {
+        if kernel == Kernel::CorrectTail {
             let rounds = self.inner.read_sum(TAIL_SUM_ROUNDS)? as usize;
             let ends = TAIL_SUM_ENDS as usize;
             round_ends = self.inner.read(FrameBuffer::Sums, ends..ends + rounds)?;
         }
-        self.launches.push(Recorded { kernel, step: *step, round_ends });
+        self.launches.push(Recorded { stage, kernel, step: *step, round_ends });
         Ok(())
     }
 
@@ -77,7 +84,7 @@ impl Backend for RecordingBackend<'_> {
         self.inner.write(buffer, words)
     }
 
-    fn take_timings(&mut self) -> Result<Vec<(Kernel, f64)>> {
+    fn take_timings(&mut self) -> Result<Vec<(Stage, f64)>> {
         self.inner.take_timings()
     }
 

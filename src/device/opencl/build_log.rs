@@ -57,7 +57,7 @@ pub fn assemble(files: &[(&str, &str)]) -> String {
     text
 }
 
-/// The file name and line of a mark such as `#line 12 "kernels/step1.cl"`; the name is `None` if absent.
+/// The file name and line of a mark such as `#line 12 "kernels/trace.cl"`; the name is `None` if absent.
 fn mark(line: &str) -> Option<(usize, Option<&str>)> {
     let rest = line.trim_start().strip_prefix('#')?.trim_start();
     let rest = rest.strip_prefix("line")?.trim_start();
@@ -162,7 +162,7 @@ mod tests {
     use super::*;
 
     fn sample() -> String {
-        assemble(&[("kernels/common/a.clh", "int a;\nint b;\n"), ("kernels/step1.cl", "line1\nline2\nline3")])
+        assemble(&[("kernels/common/a.clh", "int a;\nint b;\n"), ("kernels/trace.cl", "line1\nline2\nline3")])
     }
 
     fn only(log: &str) -> Message {
@@ -174,27 +174,27 @@ mod tests {
     #[test]
     fn three_forms_of_logs_are_read() {
         let expected = Message {
-            file: "kernels/step1.cl".into(),
+            file: "kernels/trace.cl".into(),
             line: 2,
             column: 15,
             severity: Severity::Error,
             text: "use of undeclared identifier 'x'".into(),
         };
         // PoCL.
-        assert_eq!(only("error: kernels/step1.cl:2:15: use of undeclared identifier 'x'"), expected);
+        assert_eq!(only("error: kernels/trace.cl:2:15: use of undeclared identifier 'x'"), expected);
         // Mesa, and phones with clang inside.
-        assert_eq!(only("kernels/step1.cl:2:15: error: use of undeclared identifier 'x'"), expected);
+        assert_eq!(only("kernels/trace.cl:2:15: error: use of undeclared identifier 'x'"), expected);
         // Oclgrind: lines of the whole text, name of its own. Marks are lines 1 and 4.
         assert_eq!(only("input.cl:6:15: error: use of undeclared identifier 'x'"), expected);
         // Qualcomm's, with a range; and with a folder in front.
         assert_eq!(only("<source>:6:15:{6:15-6:16}: error: use of undeclared identifier 'x'"), expected);
-        assert_eq!(only("/tmp/x/kernels/step1.cl:2:15: error: use of undeclared identifier 'x'"), expected);
-        assert_eq!(expected.to_string(), "kernels/step1.cl:2:15: error: use of undeclared identifier 'x'");
+        assert_eq!(only("/tmp/x/kernels/trace.cl:2:15: error: use of undeclared identifier 'x'"), expected);
+        assert_eq!(expected.to_string(), "kernels/trace.cl:2:15: error: use of undeclared identifier 'x'");
     }
 
     #[test]
     fn severities_and_other_lines() {
-        let log = "1 error generated.\n\nwarning: kernels/step1.cl:1:1: odd: very\n   ^~~~\nkernels/step1.cl:3:2: note: here\n\
+        let log = "1 error generated.\n\nwarning: kernels/trace.cl:1:1: odd: very\n   ^~~~\nkernels/trace.cl:3:2: note: here\n\
                    kernels/common/a.clh:1:5: fatal error: gone\nerror: no place at all\n::::";
         let messages = parse(log, &sample());
         let short: Vec<_> = messages.iter().map(|m| (m.severity, m.line, m.text.as_str())).collect();
@@ -210,7 +210,7 @@ mod tests {
         assert_eq!(locate(&source, 1), None);
         assert_eq!(locate(&source, 2), Some(("kernels/common/a.clh".into(), 1)));
         assert_eq!(locate(&source, 3), Some(("kernels/common/a.clh".into(), 2)));
-        assert_eq!(locate(&source, 7), Some(("kernels/step1.cl".into(), 3)));
+        assert_eq!(locate(&source, 7), Some(("kernels/trace.cl".into(), 3)));
         assert_eq!(locate(&source, 8), None);
         assert_eq!(locate("#line 7 \"x\"\na\n# line 20\nb", 4), Some(("x".into(), 20)));
         assert_eq!(mark("#pragma line 3"), None);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! An OpenCL device as a back end: one program per stage, built on first use, and one buffer per binding.
+//! An OpenCL device as a back end: programs built on first use, and one buffer per binding.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -9,7 +9,7 @@ use crate::device::kernels::{self, Mutation};
 use crate::device::launch_check::check_launch;
 use crate::device::opencl::{AnyBuffer, Arg, Buffer, Door, Kernel as DeviceKernel, Launch, Limits, ProgramSource};
 use crate::device::profiles::Choices;
-use crate::device::stage::{Binding, Items, Kernel};
+use crate::device::stage::{Binding, Items, Kernel, LAUNCHES, Program, Stage};
 use crate::error::Result;
 use crate::layout::{self, BuildFlavour, FrameParams, StepParams, Traversal};
 use crate::monitor::Monitor;
@@ -130,7 +130,7 @@ impl OpenClBackend {
 
     /// Lowers the work-group of scans to what the driver allows their kernel, which it says once that is built.
     fn fit_scans(&mut self) {
-        let scan = Kernel::Step2bScan;
+        let scan = Kernel::PackScan;
         // What forbids the program is told when a frame wants it.
         if self.build(scan).is_ok()
             && let Some(kernel) = self.kernels.get(&(scan, self.flavour))
@@ -190,9 +190,9 @@ impl OpenClBackend {
 
     /// The options and texts that the device's compiler gets, in one: what a verdict about the kernels depends on.
     pub(crate) fn program_texts(&self) -> String {
-        let stages = crate::device::stage::Stage::ALL.map(|stage| kernels::stage_source(stage, self.mutation.as_ref()));
+        let programs = Program::ALL.map(|program| kernels::program_source(program, self.mutation.as_ref()));
         let probe = kernels::assemble("probe.cl", self.mutation.as_ref());
-        format!("{} {:?} {probe} {}", layout::build_options(self.flavour), self.flavour, stages.concat())
+        format!("{} {:?} {probe} {}", layout::build_options(self.flavour), self.flavour, programs.concat())
     }
 
     /// The rules that its scene is shaded by.
@@ -239,15 +239,15 @@ impl OpenClBackend {
         }
         self.monitor.check()?;
         let started = std::time::Instant::now();
-        let stage = kernel.stage();
+        let program = kernel.program();
         let mut options = layout::build_options(self.flavour);
         if self.flavour.strict && self.door.limits().correctly_rounded_divide_sqrt {
             options.push_str(" -cl-fp32-correctly-rounded-divide-sqrt");
         }
-        let source = kernels::stage_source(stage, self.mutation.as_ref());
-        let program = self.door.program(&ProgramSource { name: stage.name(), source: &source, options: &options })?;
-        for entry in Kernel::ALL.into_iter().filter(|k| k.stage() == stage) {
-            self.kernels.insert((entry, self.flavour), program.kernel(entry.name())?);
+        let source = kernels::program_source(program, self.mutation.as_ref());
+        let built = self.door.program(&ProgramSource { name: program.name(), source: &source, options: &options })?;
+        for entry in program.kernels() {
+            self.kernels.insert((entry, self.flavour), built.kernel(entry.name())?);
         }
         self.program_ms += started.elapsed().as_secs_f64() * 1e3;
         Ok(())
@@ -263,10 +263,10 @@ pub fn scan_group(limits: &Limits) -> u32 {
     previous_power_of_two(widest.min(local_words)).max(2) as u32
 }
 
-/// The work-group that `kernel` is launched with before it is fitted to the kernel's own limit; `None`: the scan's.
-pub fn work_group(choices: &Choices, kernel: Kernel) -> Option<[usize; 2]> {
-    match kernel.items() {
-        Items::Grid => Some(choices.work_group(kernel.stage().name())),
+/// The work-group that `kernel` is launched with by `stage` before it is fitted to the kernel's own limit; `None`: the scan's.
+pub fn work_group(choices: &Choices, stage: Stage, kernel: Kernel) -> Option<[usize; 2]> {
+    match kernel.items(stage) {
+        Items::Grid => Some(choices.work_group(stage.name())),
         Items::List | Items::Chunks | Items::OneGroup => Some([LIST_GROUP, 1]),
         Items::Groups => None,
     }
@@ -289,6 +289,11 @@ impl Backend for OpenClBackend {
 
     fn scan_group(&self) -> u32 {
         self.scan_group
+    }
+
+    fn prefers_few_launches(&self) -> bool {
+        // Each of its kernels is compiled before it first runs, and a launch costs microseconds.
+        !self.door.is_cpu()
     }
 
     fn traversal(&self) -> Traversal {
@@ -323,10 +328,10 @@ impl Backend for OpenClBackend {
         }
     }
 
-    fn run(&mut self, kernel: Kernel, step: &StepParams) -> Result<()> {
+    fn run(&mut self, stage: Stage, kernel: Kernel, step: &StepParams) -> Result<()> {
         self.build(kernel)?;
         let (Some(scene), Some((sizes, buffers))) = (&self.scene, &self.buffers) else { return Ok(()) };
-        check_launch(kernel, step, &self.frame, sizes)?;
+        check_launch(stage, kernel, step, &self.frame, sizes)?;
         let device_kernel = &self.kernels[&(kernel, self.flavour)];
         let mut args: Vec<Arg> = Vec::with_capacity(20);
         for binding in kernel.bindings() {
@@ -358,27 +363,28 @@ impl Backend for OpenClBackend {
                 Binding::Scratch => args.push(Arg::Local(8 * step.scan_group as usize)),
             }
         }
-        let barrier = matches!(kernel.items(), Items::Groups | Items::OneGroup);
-        let global = match kernel.items() {
+        let items = kernel.items(stage);
+        let barrier = matches!(items, Items::Groups | Items::OneGroup);
+        let global = match items {
             Items::Grid => [step.grid_width as usize, step.grid_height as usize],
             Items::List | Items::Groups => [step.item_count as usize, 1],
             Items::Chunks => [step.item_count.div_ceil(32) as usize, 1],
             Items::OneGroup => [1, 1],
         };
         let fit = |wanted| self.door.fit_work_group(device_kernel, wanted, barrier);
-        let local = match work_group(self.door.choices(), kernel) {
+        let local = match work_group(self.door.choices(), stage, kernel) {
             // Its scratch memory is that of a scan.
-            Some([width, _]) if kernel.items() == Items::OneGroup => fit([width.min(step.scan_group as usize), 1]),
+            Some([width, _]) if items == Items::OneGroup => fit([width.min(step.scan_group as usize), 1]),
             Some(wanted) => fit(wanted),
             // The scan's levels depend on the group: it is not fitted but checked.
             None => [step.scan_group as usize, 1],
         };
-        let global = if kernel.items() == Items::OneGroup { local } else { global };
+        let global = if items == Items::OneGroup { local } else { global };
         if global.contains(&0) {
             return Ok(());
         }
         self.door.launch(&Launch {
-            label: kernel.name(),
+            label: kernel.label(stage),
             kernel: device_kernel,
             args: &args,
             global,
@@ -406,10 +412,10 @@ impl Backend for OpenClBackend {
         }
     }
 
-    fn take_timings(&mut self) -> Result<Vec<(Kernel, f64)>> {
+    fn take_timings(&mut self) -> Result<Vec<(Stage, f64)>> {
         let timings = self.door.take_timings()?;
-        let kernel = |label: &str| Kernel::ALL.into_iter().find(|k| k.name() == label);
-        Ok(timings.into_iter().filter_map(|(label, ms)| Some((kernel(label)?, ms))).collect())
+        let stage = |label: &str| LAUNCHES.iter().find(|(.., of)| *of == label).map(|(stage, ..)| *stage);
+        Ok(timings.into_iter().filter_map(|(label, ms)| Some((stage(label)?, ms))).collect())
     }
 
     fn watch(&mut self, monitor: &Monitor) {

@@ -35,7 +35,7 @@ impl<'a> Arg<'a> {
 
 /// One launch of a kernel.
 pub struct Launch<'a> {
-    /// The stage's name: the label of its time, its slices and its errors.
+    /// The stage and the kernel: the label of its time, its slices and its errors.
     pub label: &'static str,
     /// What runs.
     pub kernel: &'a Kernel,
@@ -68,10 +68,12 @@ impl Door {
         // PoCL compiles a kernel once for launches that begin at zero and once for others: with an offset along an axis
         // that no kernel looks at, the first slice is like the others, and kernels are compiled once.
         let aside = usize::from(self.is_cpu());
+        // It also compiles a kernel anew for launches that are wider than 16 bits count.
+        let most = if self.is_cpu() { u64::from(u16::MAX) } else { u64::MAX };
         let state = &mut *lock(&self.state);
         state.timing.harvest(&mut state.planner, Wait::No)?;
         set_args(launch)?;
-        while let Some(slice) = slicer.next(state.planner.items(label)) {
+        while let Some(slice) = slicer.next(state.planner.items(label).min(most)) {
             let queued_ms = state.planner.queued_ms();
             state.timing.harvest(&mut state.planner, Wait::UntilBelow(queued_ms))?;
             state.check_monitor()?;

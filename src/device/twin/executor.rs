@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use crate::device::backend::{Backend, BackendInfo, BufferSizes, FrameBuffer, MemoryLimits};
 use crate::device::launch_check::check_launch;
-use crate::device::stage::Kernel;
+use crate::device::stage::{Kernel, Stage};
 use crate::device::twin::{self, FrameBuffers, SceneArgs, Words};
 use crate::error::Result;
 use crate::layout::{FrameParams, StepParams, Traversal};
@@ -20,7 +20,7 @@ pub struct TwinBackend {
     sizes: Option<BufferSizes>,
     buffers: FrameBuffers,
     traversal: Traversal,
-    timings: Vec<(Kernel, f64)>,
+    timings: Vec<(Stage, f64)>,
     peak_bytes: u64,
     monitor: Monitor,
 }
@@ -95,6 +95,10 @@ impl Backend for TwinBackend {
         MemoryLimits { total_bytes: u64::MAX, allocation_bytes: u64::MAX }
     }
 
+    fn prefers_few_launches(&self) -> bool {
+        true
+    }
+
     fn traversal(&self) -> Traversal {
         self.traversal
     }
@@ -119,13 +123,13 @@ impl Backend for TwinBackend {
         Ok(())
     }
 
-    fn run(&mut self, kernel: Kernel, step: &StepParams) -> Result<()> {
+    fn run(&mut self, stage: Stage, kernel: Kernel, step: &StepParams) -> Result<()> {
         let (Some(frame), Some(sizes)) = (&self.frame, &self.sizes) else { return Ok(()) };
-        check_launch(kernel, step, frame, sizes)?;
+        check_launch(stage, kernel, step, frame, sizes)?;
         let started = Instant::now();
         let scene = twin::SceneArgs { traversal: self.traversal, ..scene_args(&self.scene, frame) };
-        twin::run(kernel, &scene, step, &self.buffers, &self.monitor)?;
-        self.timings.push((kernel, started.elapsed().as_secs_f64() * 1e3));
+        twin::run(stage, kernel, &scene, step, &self.buffers, &self.monitor)?;
+        self.timings.push((stage, started.elapsed().as_secs_f64() * 1e3));
         Ok(())
     }
 
@@ -145,7 +149,7 @@ impl Backend for TwinBackend {
         Ok(())
     }
 
-    fn take_timings(&mut self) -> Result<Vec<(Kernel, f64)>> {
+    fn take_timings(&mut self) -> Result<Vec<(Stage, f64)>> {
         Ok(std::mem::take(&mut self.timings))
     }
 

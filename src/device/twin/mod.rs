@@ -8,22 +8,19 @@
 #![allow(clippy::neg_cmp_op_on_partial_ord)]
 
 pub mod bridge;
+mod check;
+mod correct;
+mod correct_sweep;
+mod correct_tail;
 pub mod executor;
 pub mod known_shadows;
 pub mod pack;
 pub mod planes;
+pub mod ray_tree;
 pub mod scene_args;
 pub mod shade;
 pub mod similarity;
-mod step1;
-mod step2a;
-mod step2b;
-mod step2c;
-mod step3a;
-mod step3b;
-mod step3c;
-mod step4;
-pub mod trace;
+mod trace;
 pub mod traverse;
 mod walk_short;
 mod walk_stack;
@@ -35,7 +32,7 @@ use rayon::prelude::*;
 pub use planes::Words;
 pub use scene_args::SceneArgs;
 
-use crate::device::stage::{Items, Kernel};
+use crate::device::stage::{Items, Kernel, Stage};
 use crate::error::Result;
 use crate::layout::StepParams;
 use crate::monitor::Monitor;
@@ -60,11 +57,12 @@ pub struct FrameBuffers {
 /// Work-items that a thread runs before it asks whether the launch is to end.
 const ITEMS_AT_ONCE: u32 = 16;
 
-/// Launches `kernel`: runs its twin for every work-item.
+/// Launches `kernel` for `stage`: runs its twin for every work-item.
 ///
 /// # Errors
 /// [`crate::Error::Cancelled`]: the buffers hold anything then.
 pub fn run(
+    stage: Stage,
     kernel: Kernel,
     scene: &SceneArgs,
     step: &StepParams,
@@ -72,12 +70,11 @@ pub fn run(
     monitor: &Monitor,
 ) -> Result<()> {
     let cancelled = || monitor.cancel().is_cancelled();
-    match kernel.items() {
+    match kernel.items(stage) {
         Items::Grid => {
             let item = match kernel {
-                Kernel::Step1 => step1::step1,
-                Kernel::Step2a => step2a::step2a,
-                Kernel::Step3a => step3a::step3a,
+                Kernel::Trace => trace::trace_grid,
+                Kernel::Check => check::check,
                 _ => unreachable!("kernels over a grid are listed above"),
             };
             let rows_done = AtomicU32::new(0);
@@ -92,9 +89,9 @@ pub fn run(
                 monitor.tell(done as f32 / step.grid_height as f32);
             });
         }
-        Items::OneGroup => step4::step4_tail(scene, step, buffers),
+        Items::OneGroup => correct_tail::correct_tail(scene, step, buffers),
         Items::List | Items::Chunks | Items::Groups => {
-            let count = match kernel.items() {
+            let count = match kernel.items(stage) {
                 Items::Chunks => step.item_count.div_ceil(32),
                 Items::Groups => step.item_count.div_ceil(step.scan_group),
                 _ => step.item_count,
@@ -113,21 +110,20 @@ pub fn run(
 /// One work-item (or group) of a one-dimensional kernel. Exhaustive: a kernel without a twin does not compile.
 fn item_1d(kernel: Kernel, scene: &SceneArgs, step: &StepParams, i: u32, buffers: &FrameBuffers) {
     match kernel {
-        Kernel::Step1 | Kernel::Step2a | Kernel::Step3a => unreachable!("kernels over a grid run in two dimensions"),
-        Kernel::Step2bCount => step2b::step2b_count(scene, step, i, buffers),
-        Kernel::Step2bScan => step2b::step2b_scan(step, i, buffers),
-        Kernel::Step2bScatter => step2b::step2b_scatter(step, i, buffers),
-        Kernel::Step2c => step2c::step2c(scene, step, i, buffers),
-        Kernel::Step3bCount => step3b::step3b_count(scene, step, i, buffers),
-        Kernel::Step3bScan => step3b::step3b_scan(step, i, buffers),
-        Kernel::Step3bScatter => step3b::step3b_scatter(step, i, buffers),
-        Kernel::Step3c => step3c::step3c(scene, step, i, buffers),
-        Kernel::Step4Mark => step4::step4_mark(scene, step, i, buffers),
-        Kernel::Step4Count => step4::step4_count(scene, step, i, buffers),
-        Kernel::Step4Scan => step4::step4_scan(step, i, buffers),
-        Kernel::Step4Scatter => step4::step4_scatter(scene, step, i, buffers),
-        Kernel::Step4Trace => step4::step4_trace(scene, step, i, buffers),
-        Kernel::Step4Tail => unreachable!("a kernel of one work-group has no items"),
-        Kernel::Step4Sweep => step4::step4_sweep(scene, step, i, buffers),
+        Kernel::Trace => trace::trace_list(scene, step, i, buffers),
+        Kernel::Check => unreachable!("a kernel over a grid runs in two dimensions"),
+        Kernel::PackCount => pack::pack_count(scene, step, i, buffers),
+        Kernel::PackScan => pack::pack_scan(step, i, buffers),
+        Kernel::PackScatter => pack::pack_scatter(step, i, buffers),
+        Kernel::CorrectMark => correct::correct_mark(scene, step, i, buffers),
+        Kernel::CorrectCount => correct::correct_count(scene, step, i, buffers),
+        Kernel::CorrectScatter => correct::correct_scatter(scene, step, i, buffers),
+        Kernel::CorrectTail => unreachable!("a kernel of one work-group has no items"),
+        Kernel::CorrectSweep => correct_sweep::correct_sweep(scene, step, i, buffers),
     }
+}
+
+/// The pixel of a grid's item.
+fn grid_pixel(step: &StepParams, gx: u32, gy: u32) -> (u32, u32) {
+    (step.origin_x + step.step_x * gx, step.origin_y + step.step_y * gy)
 }

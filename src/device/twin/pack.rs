@@ -1,8 +1,26 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Twin of `kernels/common/pack.clh` and `pack_order.clh`: packing by a prefix scan.
+//! Twin of `kernels/pack.cl`, `kernels/common/pack.clh` and `kernels/common/pack_order.clh`: packing by a prefix scan.
 
 use super::planes::{Words, plane_index};
+use super::{FrameBuffers, SceneArgs};
 use crate::layout::*;
+
+/// One work-item of `pack_count`.
+pub fn pack_count(scene: &SceneArgs, step: &StepParams, chunk: u32, buffers: &FrameBuffers) {
+    count(chunk, step.item_count, &buffers.masks, &buffers.sums, |i| {
+        grid_item_is_pending(scene.frame, step, &buffers.attributes, i)
+    });
+}
+
+/// One work-group of `pack_scan`.
+pub fn pack_scan(step: &StepParams, group: u32, buffers: &FrameBuffers) {
+    scan(group, step, &buffers.sums);
+}
+
+/// One work-item of `pack_scatter`.
+pub fn pack_scatter(step: &StepParams, chunk: u32, buffers: &FrameBuffers) {
+    scatter(chunk, step, &buffers.masks, &buffers.sums, &buffers.list, |i| grid_item_pixel(step, i));
+}
 
 /// Mask word and flag count of a chunk of 32 items (`PACK_COUNT`).
 pub fn count(chunk: u32, item_count: u32, masks: &Words, sums: &Words, flag: impl Fn(u32) -> bool) {
@@ -20,8 +38,8 @@ pub fn count(chunk: u32, item_count: u32, masks: &Words, sums: &Words, flag: imp
     sums.set(chunk, mask.count_ones());
 }
 
-/// One work-group of one level of the scan (`pack_scan`).
-pub fn scan(group: u32, step: &StepParams, sums: &Words) {
+/// One work-group of one level of the scan (`scan_level`).
+fn scan(group: u32, step: &StepParams, sums: &Words) {
     let begin = group * step.scan_group;
     let end = (begin + step.scan_group).min(step.item_count);
     let mut total = 0;

@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-// step2a (paper, Step II-a): similarity checks of each A1 pixel against its left and right neighbours; interpolate and shade
-// where all succeed, mark for tracing where one fails.
+// check (paper, Steps II-a and III-a): similarity checks of each adaptive pixel of a grid against two opposite
+// neighbours, left and right (A1) or upper and lower (A2); interpolates and shades where all succeed, marks for tracing
+// where one fails.
 // Inputs: frame, scene tables, attribute planes of the references. Outputs: attribute planes, class INTERPOLATED or
 // PENDING with the fail mask, claim, colour of interpolated pixels.
 // Invariant: every pixel of the grid gets a class; references are not written. Cost: two attribute vectors read, one
 // written, one local shading per interpolated item; no rays.
-// Twin: src/device/twin/step2a.rs.
+// Twin: src/device/twin/check.rs.
 #include "types.h"
 #include "common/similarity.clh"
 
-__kernel void step2a(SCENE_PARAMS, const StepParams step, __global uint *attributes, __global uint *out_color,
-                     __global uint *out_counters) {
+__kernel void check(SCENE_PARAMS, const StepParams step, __global uint *attributes, __global uint *out_color,
+                    __global uint *out_counters) {
   const uint gx = get_global_id(0), gy = get_global_id(1);
   if (gx >= step.grid_width || gy >= step.grid_height) return;
   check_pixel(SCENE_ARGS, &step, step.origin_x + step.step_x * gx, step.origin_y + step.step_y * gy, attributes,
