@@ -9,10 +9,11 @@ use rarefy::Monitor;
 use rarefy::Scene;
 use rarefy::device::backend::{Backend, BackendInfo, BufferSizes, FrameBuffer, MemoryLimits};
 use rarefy::device::hooks::parity::{KernelParity, ParityBackend};
+use rarefy::device::kernels::Mutation;
 use rarefy::device::opencl::{OpenOptions, Profile};
 use rarefy::device::stage::{Kernel, LAUNCHES, Stage};
 use rarefy::device::twin::executor::TwinBackend;
-use rarefy::layout::{FrameParams, StepParams, expected_probe};
+use rarefy::layout::{FrameParams, StepParams, struct_layout};
 use rarefy::method::options::{GcolSpace, Interpolation, Method, Mode, RenderOptions, TestSet};
 use rarefy::prepare::scene_buffers::Shading;
 use rarefy::scene::builtin;
@@ -287,15 +288,21 @@ fn the_device_lays_structs_out_as_the_host_does() {
     }
     let prepared = Prepared::named("wall");
     let mut device = prepared.device(true, &OpenOptions::default());
-    assert_eq!(device.probe().unwrap(), expected_probe());
-    // The comparison can fail.
-    let mutation = rarefy::device::kernels::Mutation {
-        file: "types.h".into(),
-        from: "  uint depth_limit;".into(),
-        to: "  uint inserted; uint depth_limit;".into(),
-    };
-    device.mutate(Some(mutation));
-    assert_ne!(device.probe().unwrap(), expected_probe());
+    let expected: Vec<u32> = struct_layout().iter().map(|entry| entry.bytes).collect();
+    assert_eq!(device.probe().unwrap(), expected);
+    // The comparison can fail: by a member too many, and by any two that swapped places.
+    for (from, to) in [
+        ("  uint depth_limit;", "  uint inserted; uint depth_limit;"),
+        ("  float t_pos;          // G2, scene units\n  float t_norm;", "  float t_norm;\n  float t_pos;"),
+        ("  float s1;\n  float t1;", "  float t1;\n  float s1;"),
+        (
+            "  uint width;\n  uint height;\n  uint pad0;\n} Texture",
+            "  uint height;\n  uint width;\n  uint pad0;\n} Texture",
+        ),
+    ] {
+        device.mutate(Some(Mutation { file: "types.h".into(), from: from.into(), to: to.into() }));
+        assert_ne!(device.probe().unwrap(), expected, "{from}");
+    }
 }
 
 /// A twin that changes the first word of `buffer` after each launch of a kernel by a stage.

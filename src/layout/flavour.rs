@@ -55,7 +55,8 @@ pub struct BuildFlavour {
     pub traversal: Traversal,
 }
 
-/// The build options that make kernels of a flavour; the wrapper adds the language version and `-Werror`.
+/// The build options that make kernels of a flavour. The wrapper adds the language version and `-Werror`, and for strict
+/// kernels the option that a device may have for correct rounding.
 pub fn build_options(flavour: BuildFlavour) -> String {
     use std::fmt::Write;
     let mut options = String::new();
@@ -71,9 +72,7 @@ pub fn build_options(flavour: BuildFlavour) -> String {
     ] {
         let _ = write!(options, "-D{name}={value:?}f ");
     }
-    for (on, name) in
-        [(flavour.strict, "RAREFY_STRICT"), (flavour.count, "RAREFY_COUNT"), (flavour.anchor, "RAREFY_ANCHOR")]
-    {
+    for (on, name) in [(flavour.count, "RAREFY_COUNT"), (flavour.anchor, "RAREFY_ANCHOR")] {
         if on {
             let _ = write!(options, "-D{name}=1 ");
         }
@@ -91,9 +90,9 @@ mod tests {
 
     #[test]
     fn options_name_every_constant_once() {
-        let options = build_options(BuildFlavour { strict: true, ..BuildFlavour::default() });
+        let options = build_options(BuildFlavour::default());
         assert_eq!(options.matches("-DPLANE_CLAIM=11u").count(), 1);
-        assert!(options.contains("-DRAREFY_STRICT=1") && !options.contains("RAREFY_COUNT"));
+        assert!(!options.contains("RAREFY_COUNT"));
         assert!(!options.contains("RAREFY_SHORT_STACK"));
         let mut names: Vec<&str> = SHARED_CONSTANTS.iter().map(|(name, _)| *name).collect();
         names.sort_unstable();

@@ -131,35 +131,134 @@ pub struct TriangleShading {
 }
 const _: () = assert!(size_of::<TriangleShading>() == 48);
 
-/// What the probe kernel must report: sizes and offsets in bytes, in its order.
-pub fn expected_probe() -> Vec<u32> {
-    use std::mem::offset_of;
-    let bytes: [usize; 25] = [
-        size_of::<FrameParams>(),
-        offset_of!(FrameParams, up),
-        offset_of!(FrameParams, bounds_max),
-        offset_of!(FrameParams, width),
-        offset_of!(FrameParams, plane_pitch),
-        offset_of!(FrameParams, epsilon),
-        offset_of!(FrameParams, interior_end),
-        size_of::<StepParams>(),
-        offset_of!(StepParams, reference_dx),
-        offset_of!(StepParams, item_count),
-        offset_of!(StepParams, t_pos),
-        offset_of!(StepParams, tests),
-        offset_of!(StepParams, scan_group),
-        size_of::<Light>(),
-        offset_of!(Light, intensity),
-        size_of::<Material>(),
-        offset_of!(Material, transmission),
-        offset_of!(Material, surface),
-        offset_of!(Material, cutout_texture),
-        size_of::<Texture>(),
-        offset_of!(Texture, height),
-        size_of::<TriangleShading>(),
-        offset_of!(TriangleShading, object),
-        offset_of!(TriangleShading, texcoords) + 5 * size_of::<f32>(),
-        offset_of!(TriangleShading, material),
-    ];
-    bytes.iter().map(|&b| b as u32).collect()
+/// A size or an offset that host and device must agree about.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct LayoutEntry {
+    /// `FrameParams` for the size of a struct, `FrameParams.eye` for the offset of a member.
+    pub name: &'static str,
+    /// Bytes.
+    pub bytes: u32,
+}
+
+/// Size and member offsets of a struct; `member = field[i]` for an element of an array that is a member in kernels.
+macro_rules! layout_of {
+    ($type:ident { $($member:ident $(= $field:ident[$at:literal])?),* $(,)? }) => {
+        [
+            LayoutEntry { name: stringify!($type), bytes: size_of::<$type>() as u32 },
+            $(LayoutEntry {
+                name: concat!(stringify!($type), ".", stringify!($member)),
+                bytes: layout_of!(@offset $type $member $($field $at)?),
+            }),*
+        ]
+    };
+    (@offset $type:ident $member:ident) => { std::mem::offset_of!($type, $member) as u32 };
+    (@offset $type:ident $member:ident $field:ident $at:literal) => {
+        (std::mem::offset_of!($type, $field) + $at * size_of::<u32>()) as u32
+    };
+}
+
+/// What the probe kernel must report, in its order: the size of each shared struct and the offset of every member.
+pub fn struct_layout() -> Vec<LayoutEntry> {
+    [
+        &layout_of!(FrameParams {
+            eye, forward, right, up, ambient, background, bounds_min, bounds_max, width, height, block, phase_width,
+            phase_height, plane_pitch, light_count, depth_limit, epsilon, window_begin, window_end, interior_begin,
+            interior_end, pad0 = pad[0], pad1 = pad[1], pad2 = pad[2],
+        })[..],
+        &layout_of!(StepParams {
+            origin_x,
+            origin_y,
+            step_x,
+            step_y,
+            grid_width,
+            grid_height,
+            reference_dx,
+            reference_dy,
+            item_count,
+            list_offset,
+            source_offset,
+            sums_offset,
+            t_pos,
+            t_norm,
+            t_conv,
+            t_tex,
+            t_gcol,
+            tests,
+            flags,
+            scan_group,
+            lenient_tests,
+            t_visible,
+            list_end,
+            pixel_class,
+        }),
+        &layout_of!(Light { position, intensity }),
+        &layout_of!(Material {
+            diffuse,
+            specular,
+            reflectance,
+            transmission,
+            surface,
+            diffuse_texture,
+            cutout_texture,
+            pad0,
+        }),
+        &layout_of!(Texture { offset, width, height, pad0 }),
+        &layout_of!(TriangleShading {
+            normal0 = normals[0], normal1 = normals[1], normal2 = normals[2], object, s0 = texcoords[0],
+            t0 = texcoords[1], s1 = texcoords[2], t1 = texcoords[3], s2 = texcoords[4], t2 = texcoords[5], material,
+            pad0,
+        }),
+    ]
+    .concat()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The structs of a header and their members, named as in [`struct_layout`].
+    fn declared(header: &str) -> Vec<String> {
+        let mut names = Vec::new();
+        for body in header.split("typedef struct {").skip(1) {
+            let (members, rest) = body.split_once('}').unwrap();
+            let name = rest.split(';').next().unwrap().trim();
+            names.push(name.to_owned());
+            let lines = members.lines().map(|line| line.split("//").next().unwrap());
+            for member in lines.filter_map(|line| line.trim().strip_suffix(';')) {
+                names.push(format!("{name}.{}", member.rsplit(' ').next().unwrap()));
+            }
+        }
+        names
+    }
+
+    /// What the probe kernel writes, in order.
+    fn probed(kernel: &str) -> Vec<String> {
+        let (mut names, mut of) = (Vec::new(), String::new());
+        for line in kernel.lines() {
+            let argument = |of: &str| Some(line.trim().strip_prefix(of)?.strip_suffix(");")?.to_owned());
+            if let Some(name) = argument("SIZE(") {
+                of = name;
+                names.push(of.clone());
+            } else if let Some(member) = argument("AT(") {
+                names.push(format!("{of}.{member}"));
+            }
+        }
+        names
+    }
+
+    #[test]
+    fn every_member_of_every_shared_struct_is_probed() {
+        let header = include_str!("../../kernels/types.h");
+        let listed: Vec<String> = struct_layout().iter().map(|entry| entry.name.to_owned()).collect();
+        let shared = |names: Vec<String>| -> Vec<String> {
+            names.into_iter().filter(|name| name.split('.').next() != Some("Work")).collect()
+        };
+        assert_eq!(shared(declared(header)), listed, "kernels/types.h has other members");
+        assert_eq!(probed(include_str!("../../kernels/probe.cl")), listed, "kernels/probe.cl reports something else");
+        // A member that nobody lists is seen, and so are two in another order.
+        let more = header.replace("  uint tests;", "  uint tests;\n  uint more;");
+        assert_eq!(declared(&more).len(), declared(header).len() + 1);
+        let swapped = header.replace("float t_pos;", "float x;").replace("float t_norm;", "float t_pos;");
+        assert_ne!(shared(declared(&swapped.replace("float x;", "float t_norm;"))), listed);
+    }
 }

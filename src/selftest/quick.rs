@@ -177,12 +177,13 @@ pub(crate) fn run_frame(
 }
 
 pub(crate) fn check_layout(probe: &[u32]) -> Check {
-    let expected = layout::expected_probe();
-    let passed = probe == expected.as_slice();
-    let detail = if passed {
-        format!("{} sizes and offsets agree", expected.len())
-    } else {
-        format!("the device lays structs out as {probe:?}, the host as {expected:?}")
+    let expected = layout::struct_layout();
+    let wrong = expected.iter().zip(probe).find(|(entry, bytes)| entry.bytes != **bytes);
+    let passed = wrong.is_none() && probe.len() == expected.len();
+    let detail = match wrong {
+        Some((entry, bytes)) => format!("{} is {bytes} bytes on the device, {} on the host", entry.name, entry.bytes),
+        None if passed => format!("{} sizes and offsets agree", expected.len()),
+        None => format!("{} of {} sizes and offsets were reported", probe.len(), expected.len()),
     };
     Check { name: "layout".into(), passed, detail }
 }

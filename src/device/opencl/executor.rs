@@ -205,12 +205,13 @@ impl OpenClBackend {
         self.program_ms
     }
 
-    /// Sizes and offsets of the shared structs as this device's compiler lays them out.
+    /// Sizes and offsets of the shared structs as this device's compiler lays them out, in the order of
+    /// [`layout::struct_layout`].
     ///
     /// # Errors
     /// A program that does not build, or a failing call.
     pub fn probe(&mut self) -> Result<Vec<u32>> {
-        let len = layout::expected_probe().len();
+        let len = layout::struct_layout().len();
         let out: Buffer<u32> = self.door.buffer("probe", len)?;
         let source = kernels::assemble("probe.cl", self.mutation.as_ref());
         let options = layout::build_options(self.flavour);

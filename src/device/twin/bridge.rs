@@ -17,7 +17,7 @@ pub struct Hits<'a> {
 }
 
 impl Hits<'_> {
-    /// Do the hits of two pixels differ?
+    /// Whether the hits of two pixels differ.
     pub fn differ(&self, a: (u32, u32), b: (u32, u32)) -> bool {
         let load = |(x, y): (u32, u32)| {
             let at = plane_index(self.frame, x, y);
@@ -27,7 +27,7 @@ impl Hits<'_> {
         hits_differ(self.step, &load(a), &load(b), color(a), color(b))
     }
 
-    /// Do the pixels above and below `(x, y)` both show something else than it does?
+    /// Whether the pixels above and below `(x, y)` both show something else than it does.
     fn is_thin(&self, (x, y): (u32, u32)) -> bool {
         self.differ((x, y), (x, y - 1)) && self.differ((x, y), (x, y + 1))
     }

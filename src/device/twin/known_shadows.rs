@@ -14,7 +14,7 @@ pub struct KnownShadows {
     pub bits: u32,
 }
 
-/// Do the failed tests of a pixel leave the surface between its references out of doubt?
+/// Whether the failed tests of a pixel leave no doubt about the surface between its references.
 pub fn surface_is_sure(mask: u32) -> bool {
     mask & (FAIL_G1 | FAIL_G2) == 0 && (mask & FAIL_GC != 0 || mask == FAIL_SH)
 }

@@ -100,7 +100,7 @@ pub fn grid_item_pixel(step: &StepParams, i: u32) -> u32 {
     (step.origin_x + step.step_x * (item & 0xffff)) | (step.origin_y + step.step_y * (item >> 16)) << 16
 }
 
-/// Does item `i` lie in the grid, does its pixel wait for a ray, and is it one of the half that `i` lies in?
+/// Whether item `i` lies in the grid and its pixel waits for a ray of the half of the list that `i` belongs to.
 pub fn grid_item_is_pending(frame: &FrameParams, step: &StepParams, attributes: &Words, i: u32) -> bool {
     let item = grid_item(step, i);
     if (item & 0xffff) >= step.grid_width || (item >> 16) >= step.grid_height {

@@ -147,12 +147,12 @@ pub fn gcol_distance(a: Vec3, b: Vec3, flags: u32) -> f32 {
     dot(e, e).sqrt()
 }
 
-/// Do two pixels differ by `t_visible` or more in a channel of their shown colours?
+/// Whether two pixels differ visibly: by `t_visible`, the smallest 8-bit channel difference treated as visible, or more.
 pub fn look_different(a: u32, b: u32, t_visible: u32) -> bool {
     [0, 8, 16].iter().any(|shift| ((a >> shift) & 255).abs_diff((b >> shift) & 255) >= t_visible)
 }
 
-/// Does post-correction take two hits to be of different things?
+/// Whether post-correction takes two hits to be of different things.
 pub fn hits_differ(step: &StepParams, a: &Attributes, b: &Attributes, color_a: u32, color_b: u32) -> bool {
     if a.object != b.object {
         return true;
@@ -168,7 +168,7 @@ pub fn hits_differ(step: &StepParams, a: &Attributes, b: &Attributes, color_a: u
         && (!(dot(a.normal, b.normal) >= step.t_norm) || !(gcol_distance(a.gcol, b.gcol, step.flags) <= step.t_gcol))
 }
 
-/// Of two hits that differ: do they differ in more than reflected colours?
+/// Of two hits that differ, whether they differ in more than reflected colours.
 pub fn surfaces_differ(step: &StepParams, a: &Attributes, b: &Attributes) -> bool {
     a.object != b.object
         || (step.flags & STEP_COMPARE_SHADOW != 0 && a.shadow_bits != b.shadow_bits)

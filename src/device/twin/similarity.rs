@@ -130,7 +130,7 @@ fn find_other_pair(
     pairs.flatten().next()
 }
 
-/// Would a ray that hits what `a` hit send secondary rays?
+/// Whether a ray that hits what `a` hit sends secondary rays.
 fn sends_secondary(scene: &SceneArgs, a: &Attributes) -> bool {
     a.object != NO_OBJECT
         && scene.materials[scene.object_materials[a.object as usize] as usize].surface != SURFACE_OPAQUE

@@ -177,7 +177,7 @@ pub fn closest_hit(scene: &SceneArgs, o: Vec3, d: Vec3, work: &mut Work) -> Hit 
     }
 }
 
-/// Does anything that casts a shadow lie on the ray with `0 < t < t_limit`?
+/// Whether anything that casts a shadow lies on the ray with `0 < t < t_limit`.
 pub fn any_hit(scene: &SceneArgs, o: Vec3, d: Vec3, t_limit: f32, work: &mut Work) -> bool {
     match scene.traversal {
         Traversal::PrivateStack => any_by::<StackWalk>(scene, o, d, t_limit, work),
