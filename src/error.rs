@@ -81,18 +81,18 @@ pub enum Error {
         message: String,
     },
     /// Something needs more memory or larger sizes than a limit allows.
-    #[error("{what} needs {wanted}, the limit `{limit}` allows {allowed}{remedy}", what = printable(what), remedy = if remedy.is_empty() { String::new() } else { format!(" ({remedy})") })]
+    #[error("{what} needs {wanted}, the limit `{limit}` allows {allowed}{}", in_brackets(remedies), what = printable(what))]
     LimitExceeded {
         /// What asked for it.
         what: String,
-        /// The name of the limit: an OpenCL query, or an option.
+        /// The name of the limit: an OpenCL query, a setting's path, or what is counted.
         limit: String,
         /// What was asked for, with its unit.
         wanted: String,
         /// What is allowed, with its unit.
         allowed: String,
-        /// How to stay within the limit; may be empty.
-        remedy: String,
+        /// What would keep within the limit, each by itself; may be empty.
+        remedies: &'static [Remedy],
     },
     /// A launch would reach beyond one of its buffers: a defect of this library, found before a device saw the launch.
     #[error("launch of `{kernel}` needs {wanted} {what}, there are {have}: a defect of Rarefy, please report it")]
@@ -107,7 +107,7 @@ pub enum Error {
         have: u64,
     },
     /// No OpenCL library, platform or device could be used.
-    #[error("no usable OpenCL device: {}; use --device cpu for the CPU twin", tried.join("; "))]
+    #[error("no usable OpenCL device: {}", tried.join("; "))]
     NoOpenCl {
         /// Each thing that was tried and why it did not do.
         tried: Vec<String>,
@@ -123,10 +123,7 @@ pub enum Error {
         code: i32,
     },
     /// A device was lost while it drew, opened again, and lost again.
-    #[error(
-        "{device} was lost twice in one frame: {cause}; lower `slice_ms` in a --profile, choose a smaller --size or \
-         fewer --samples, or draw with --device cpu"
-    )]
+    #[error("{device} was lost twice in one frame: {cause}{}", in_brackets(Remedy::OF_A_LOST_DEVICE))]
     DeviceLost {
         /// The device and its driver version.
         device: String,
@@ -183,6 +180,77 @@ fn shown(path: &Path) -> String {
     printable(&path.to_string_lossy()).into_owned()
 }
 
+/// What would keep within a limit, as data: a command or a binding names its own options for it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Remedy {
+    /// A larger [`Setting::MemoryBudget`].
+    LargerBudget,
+    /// A smaller [`Setting::Size`].
+    SmallerPicture,
+    /// Fewer [`Setting::Samples`].
+    FewerSamples,
+    /// Correction that converges, in place of sweeps.
+    ConvergedCorrection,
+    /// A scene of fewer triangles or textures.
+    SmallerScene,
+    /// Polygons that the modelling program cut into triangles.
+    TriangulatedFaces,
+    /// A scene of fewer lights.
+    FewerLights,
+    /// A smaller file.
+    SmallerFile,
+    /// Textures or pictures of fewer pixels.
+    ScaledPictures,
+    /// Another [`Setting::Device`].
+    OtherDevice,
+    /// The CPU twin as [`Setting::Device`].
+    CpuTwin,
+    /// A smaller work-group among the choices of a profile.
+    SmallerWorkGroup,
+    /// Shorter slices among the choices of a profile.
+    ShorterSlices,
+    /// Buffers as the memory path of a profile.
+    BufferMemory,
+    /// A start that is rounded up.
+    RoundedStart,
+}
+
+impl Remedy {
+    /// What helps where drawing takes a device too long.
+    pub const OF_A_LOST_DEVICE: &'static [Remedy] =
+        &[Remedy::ShorterSlices, Remedy::SmallerPicture, Remedy::FewerSamples, Remedy::CpuTwin];
+}
+
+impl std::fmt::Display for Remedy {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.pad(match self {
+            Remedy::LargerBudget => "a larger memory budget",
+            Remedy::SmallerPicture => "a smaller picture",
+            Remedy::FewerSamples => "fewer samples",
+            Remedy::ConvergedCorrection => "converged correction",
+            Remedy::SmallerScene => "a smaller scene",
+            Remedy::TriangulatedFaces => "faces that were triangulated in the modelling program",
+            Remedy::FewerLights => "fewer lights",
+            Remedy::SmallerFile => "a smaller file",
+            Remedy::ScaledPictures => "pictures that are scaled down",
+            Remedy::OtherDevice => "another device",
+            Remedy::CpuTwin => "the CPU twin",
+            Remedy::SmallerWorkGroup => "a smaller work-group in the profile's `choices`",
+            Remedy::ShorterSlices => "a lower `slice_ms` in the profile's `choices`",
+            Remedy::BufferMemory => "the memory path `buffers` in the profile's `choices`",
+            Remedy::RoundedStart => "a start that is rounded up",
+        })
+    }
+}
+
+/// ` (use this, that or another thing)`, or nothing.
+fn in_brackets(remedies: &[Remedy]) -> String {
+    let words: Vec<String> = remedies.iter().map(Remedy::to_string).collect();
+    let words: Vec<&str> = words.iter().map(String::as_str).collect();
+    if words.is_empty() { String::new() } else { format!(" (use {})", crate::names::list(&words)) }
+}
+
 impl Error {
     /// An [`Error::Io`] at `path`.
     pub fn io(path: impl Into<PathBuf>, source: std::io::Error) -> Self {
@@ -229,7 +297,7 @@ mod tests {
                 limit: "b".into(),
                 wanted: "c".into(),
                 allowed: "d".into(),
-                remedy: String::new(),
+                remedies: &[],
             },
         ] {
             let message = error.to_string();

@@ -22,6 +22,7 @@ use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use crate::error::Remedy;
 use crate::{Error, Result};
 
 /// How long the reader of a pipe may take nothing before writing to it is given up.
@@ -267,7 +268,7 @@ fn too_large(path: &Path, wanted: &str, max_bytes: u64) -> Error {
         limit: "file size".to_owned(),
         wanted: wanted.to_owned(),
         allowed: format!("{max_bytes} bytes"),
-        remedy: "is this the right file?".to_owned(),
+        remedies: &[Remedy::SmallerFile],
     }
 }
 

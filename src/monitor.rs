@@ -65,7 +65,7 @@ pub enum Event<'a> {
 }
 
 /// Rows of the picture that the base pixels make: one pixel a block, so a quarter of the samples with blocks of 2. They
-/// are the very pixels of the final picture (with `--samples 1`), which fill a block each. A frame that is drawn in
+/// are the very pixels of the final picture (with one sample a pixel), which fill a block each. A frame that is drawn in
 /// bands gives a preview for each band, from the top; any other gives one.
 #[derive(Debug, Clone, Copy)]
 pub struct Preview<'a> {

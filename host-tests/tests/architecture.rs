@@ -96,6 +96,24 @@ fn modules_use_only_what_comes_before_them() {
     assert!(wrong_way("src/render/renderer.rs", "use crate::scene::Scene;").is_empty());
 }
 
+/// Options of the command that a text words.
+fn worded_options(text: &str) -> Vec<&str> {
+    let starts = text.match_indices("--").map(|(at, _)| &text[at..]);
+    let option = |rest: &'_ str| rest[2..].starts_with(|c: char| c.is_ascii_lowercase());
+    starts.filter(|rest| option(rest)).map(|rest| rest.split_whitespace().next().unwrap()).collect()
+}
+
+#[test]
+fn the_library_words_no_option_of_the_command() {
+    for (file, text) in sources("src", &["rs"]) {
+        if !file.starts_with("src/cli/") {
+            assert_eq!(worded_options(&text), [""; 0], "{file}: name the setting; src/cli/errors.rs knows its option");
+        }
+    }
+    // The check can fail.
+    assert_eq!(worded_options("choose a smaller --size -- or -cl-std, x--"), ["--size"]);
+}
+
 /// `NAME` and the like; file names in capitals, such as `README.md`, lie outside the folders that are looked for.
 fn is_placeholder(word: &str) -> bool {
     !word.is_empty() && word.chars().all(|c| c.is_ascii_uppercase())

@@ -151,7 +151,7 @@ fn a_budget_cuts_the_frame_and_is_kept() {
         assert!(peak <= budget && peak < unlimited, "{peak} bytes in use, {budget} allowed, {unlimited} without limit");
     }
     let error = draw_within(Some(100 << 10)).0.map(|_| "drawn").unwrap_err();
-    assert!(matches!(&error, Error::LimitExceeded { limit, .. } if limit == "--memory-budget"), "{error}");
+    assert!(matches!(&error, Error::LimitExceeded { limit, .. } if limit == "memory_budget"), "{error}");
 }
 
 #[test]

@@ -84,8 +84,9 @@ fn outcome(what: &str, drawn: rarefy::Result<Vec<u32>>, expected: &[u32]) -> Out
         }
         Err(error @ Error::LimitExceeded { .. }) => {
             let text = error.to_string();
-            let Error::LimitExceeded { what: who, limit, wanted, allowed, remedy } = error else { unreachable!() };
-            assert!([&who, &limit, &wanted, &allowed, &remedy].iter().all(|part| !part.is_empty()), "{what}: {text}");
+            let Error::LimitExceeded { what: who, limit, wanted, allowed, remedies } = error else { unreachable!() };
+            assert!([&who, &limit, &wanted, &allowed].iter().all(|part| !part.is_empty()), "{what}: {text}");
+            assert!(!remedies.is_empty(), "{what}: {text}");
             assert!(limit.to_lowercase().contains(what), "{what}: {text}");
             Outcome::Refused(text)
         }
@@ -143,8 +144,8 @@ fn half_of_each_limit_adapts_or_refuses() {
         assert!(refused.contains(&key), "{key}: half of what is used is enough, so it was not measured");
     }
     let half = device.peak_bytes() / 2;
-    let outcome = outcome("--memory-budget", render(None, Some(half)), &expected);
-    println!("--memory-budget: {} in use, under {half}: {outcome:?}", half * 2);
+    let outcome = outcome("memory_budget", render(None, Some(half)), &expected);
+    println!("memory_budget: {} in use, under {half}: {outcome:?}", half * 2);
     assert_eq!(outcome, Outcome::SamePicture, "frames draw in bands");
 }
 
@@ -190,6 +191,6 @@ fn a_wrong_picture_is_noticed() {
 #[should_panic(expected = "needs 2, the limit `X` allows 1")]
 fn a_refusal_without_a_remedy_is_noticed() {
     let (what, limit) = ("a launch".into(), "X".into());
-    let error = Error::LimitExceeded { what, limit, wanted: "2".into(), allowed: "1".into(), remedy: String::new() };
+    let error = Error::LimitExceeded { what, limit, wanted: "2".into(), allowed: "1".into(), remedies: &[] };
     outcome("x", Err(error), &[]);
 }

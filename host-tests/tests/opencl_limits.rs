@@ -49,7 +49,7 @@ fn every_limit_refuses_with_its_numbers() {
     assert!(door.buffer::<u8>("b", 1000).is_ok());
 
     let door = door_with(&OpenOptions { memory_budget_bytes: Some(500), ..options() });
-    says(door.buffer::<u8>("b", 501).map(|_| ()), "--memory-budget", "501 bytes", "500 bytes");
+    says(door.buffer::<u8>("b", 501).map(|_| ()), "memory_budget", "501 bytes", "500 bytes");
     let door = door_with(&options());
     assert!(matches!(door.buffer::<u64>("b", usize::MAX), Err(Error::LimitExceeded { .. })));
     assert_eq!(door.memory().current_bytes, 0);

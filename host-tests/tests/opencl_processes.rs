@@ -59,7 +59,7 @@ fn without_a_platform_the_error_lists_what_was_tried() {
     let folder = tempfile::tempdir().unwrap();
     let text = printed(&child("child_without_devices", &[("OCL_ICD_VENDORS", folder.path().to_str().unwrap())]));
     assert!(text.contains("said: no usable OpenCL device: "), "{text}");
-    assert!(text.contains("no OpenCL platform is installed") && text.contains("--device cpu"), "{text}");
+    assert!(text.contains("no OpenCL platform is installed"), "{text}");
 }
 
 #[test]

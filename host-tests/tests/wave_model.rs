@@ -65,5 +65,5 @@ fn a_frame_in_bands_has_no_model() {
         Renderer::new(builtin::to_scene("spheres").unwrap(), &limited, &rarefy::Monitor::default()).unwrap();
     let large = RenderOptions { width: 500, height: 400, ..RenderOptions::default() };
     let error = wave_model(&mut renderer, &large).unwrap_err().to_string();
-    assert!(error.contains("wave model") && error.contains("--memory-budget"), "{error}");
+    assert!(error.contains("wave model") && error.contains("memory_budget"), "{error}");
 }

@@ -10,7 +10,7 @@ use crate::method::frame::{Frame, FrameStats};
 use crate::method::options::{Mode, RenderOptions, Test};
 use crate::render::renderer::{BuildTimes, Renderer};
 
-/// The statistics of one frame: what `rarefy render --json` writes.
+/// The statistics of one frame: what `rarefy render` writes.
 pub fn render_json(renderer: &mut Renderer, options: &RenderOptions, frame: &Frame, load_ms: f64) -> Value {
     let key = if options.mode == Mode::Full { "full" } else { "adaptive" };
     let mut object = head(renderer, options, load_ms);
@@ -21,7 +21,7 @@ pub fn render_json(renderer: &mut Renderer, options: &RenderOptions, frame: &Fra
     Value::Object(object)
 }
 
-/// A comparison: what `rarefy compare --json` writes.
+/// A comparison: what `rarefy compare` writes.
 pub fn compare_json(renderer: &mut Renderer, options: &RenderOptions, comparison: &Comparison, load_ms: f64) -> Value {
     let mut object = head(renderer, options, load_ms);
     let quality = &comparison.quality;
@@ -50,7 +50,7 @@ pub fn compare_json(renderer: &mut Renderer, options: &RenderOptions, comparison
     Value::Object(object)
 }
 
-/// The wave model: what `rarefy compare --wave-model --json` adds under `wave_model`.
+/// The wave model: what `rarefy compare` adds under `wave_model`.
 pub fn wave_model_json(model: &WaveModel) -> Value {
     let by_wave = |value: &dyn Fn(usize) -> f64| -> Value {
         WAVES.iter().enumerate().map(|(at, wave)| (wave.to_string(), number(value(at)))).collect::<Map<_, _>>().into()

@@ -2,7 +2,7 @@
 //! Errors of the library in the command's words: one line, with the options that would help.
 
 use rarefy::Error;
-use rarefy::error::Setting;
+use rarefy::error::{Remedy, Setting};
 
 /// The option that gives a setting.
 fn option(setting: Setting) -> Option<&'static str> {
@@ -37,12 +37,46 @@ fn option(setting: Setting) -> Option<&'static str> {
     })
 }
 
+/// What the command calls a remedy.
+fn remedy(remedy: Remedy) -> String {
+    match remedy {
+        Remedy::LargerBudget => "a larger --memory-budget".into(),
+        Remedy::SmallerPicture => "a smaller --size".into(),
+        Remedy::FewerSamples => "fewer --samples".into(),
+        Remedy::ConvergedCorrection => "--correction-method converged".into(),
+        Remedy::OtherDevice => "another --device".into(),
+        Remedy::CpuTwin => "--device cpu".into(),
+        Remedy::ShorterSlices => "a --profile with lower `slice_ms`".into(),
+        Remedy::SmallerWorkGroup => "a --profile with a smaller work-group".into(),
+        other => other.to_string(),
+    }
+}
+
+/// ` (use this, that or another thing)`, or nothing.
+fn remedies(remedies: &[Remedy]) -> String {
+    let words: Vec<String> = remedies.iter().copied().map(remedy).collect();
+    match words.as_slice() {
+        [] => String::new(),
+        [one] => format!(" (use {one})"),
+        [first @ .., last] => format!(" (use {} or {last})", first.join(", ")),
+    }
+}
+
 /// One line for `error`.
 pub fn line(error: &Error) -> String {
     let text = match error {
         Error::InvalidOption { setting, value, allowed } => {
             let name = option(*setting).unwrap_or(setting.path());
             format!("{name}: `{value}` is not allowed; it may be {allowed}")
+        }
+        Error::LimitExceeded { what, limit, wanted, allowed, remedies: given } => {
+            let is_budget = limit == Setting::MemoryBudget.path();
+            let limit = if is_budget { "--memory-budget" } else { limit };
+            format!("{what} needs {wanted}, the limit `{limit}` allows {allowed}{}", remedies(given))
+        }
+        Error::NoOpenCl { .. } => format!("{error}{}", remedies(&[Remedy::CpuTwin])),
+        Error::DeviceLost { device, cause } => {
+            format!("{device} was lost twice in one frame: {cause}{}", remedies(Remedy::OF_A_LOST_DEVICE))
         }
         other => other.to_string(),
     };
@@ -90,6 +124,28 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn errors_name_the_options_that_help_and_are_one_line() {
+        let (what, wanted, allowed) = ("a band".to_owned(), "2 MiB".to_owned(), "1 MiB".to_owned());
+        let limit = Setting::MemoryBudget.to_string();
+        let remedies = &[Remedy::LargerBudget, Remedy::FewerSamples, Remedy::SmallerScene];
+        assert_eq!(
+            line(&Error::LimitExceeded { what, limit, wanted, allowed, remedies }),
+            "a band needs 2 MiB, the limit `--memory-budget` allows 1 MiB \
+             (use a larger --memory-budget, fewer --samples or a smaller scene)"
+        );
+        assert_eq!(
+            line(&Error::option(Setting::TPos, f32::NAN, "0 or more")),
+            "--t-pos: `NaN` is not allowed; it may be 0 or more"
+        );
+        let lost = Error::DeviceLost { device: "x".into(), cause: "y".into() };
+        assert!(line(&lost).contains("--profile") && line(&lost).ends_with("--device cpu)"), "{}", line(&lost));
+        assert!(line(&Error::NoOpenCl { tried: vec!["z".into()] }).ends_with("z (use --device cpu)"));
+        let log = "step1.cl:3: error: a\n   int b\n\n".to_owned();
+        let build = Error::KernelBuild { program: "step1".into(), device: "x".into(), log };
+        assert!(line(&build).ends_with("on x: | step1.cl:3: error: a | int b"), "{}", line(&build));
     }
 
     #[test]

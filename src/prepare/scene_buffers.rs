@@ -3,7 +3,7 @@
 
 use glam::Vec3;
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Remedy, Result};
 use crate::layout::{self, *};
 use crate::monitor::Monitor;
 use crate::prepare::kdtree::KdTree;
@@ -197,7 +197,7 @@ fn check_texels(name: &str, total: u64, last_address: u64) -> Result<()> {
         limit: "texels".into(),
         wanted: format!("{total} texels"),
         allowed: format!("{} texels", most - 1),
-        remedy: "use smaller textures".into(),
+        remedies: &[Remedy::ScaledPictures],
     })
 }
 

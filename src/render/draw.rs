@@ -63,7 +63,7 @@ impl Job<'_> {
         let scene_bytes = self.buffers.bytes() + SMALL_BUFFERS_BYTES;
         let budget = self.memory_budget_bytes.unwrap_or(DEFAULT_BUDGET_BYTES).min(usize::MAX as u64 / 2);
         let room = Room {
-            total_bytes: budget.min(limits.total_bytes).saturating_sub(scene_bytes),
+            total_bytes: budget.min(limits.total_bytes),
             allocation_bytes: limits.allocation_bytes,
             scene_bytes,
             attributes: self.keep.attributes() || !self.is_full(),

@@ -9,6 +9,7 @@ use std::path::Path;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ColorType, ExtendedColorType, ImageDecoder, ImageEncoder, ImageError, ImageReader, Limits};
 
+use crate::error::Remedy;
 use crate::{Error, Result, files};
 
 /// The longest side, in pixels, of a picture that is read or written.
@@ -120,7 +121,7 @@ fn too_large(path: &Path, wanted: String) -> Error {
         wanted,
         limit: "picture side".to_owned(),
         allowed: format!("{MAX_SIDE}x{MAX_SIDE} pixels"),
-        remedy: "scale the picture down".to_owned(),
+        remedies: &[Remedy::ScaledPictures],
     }
 }
 

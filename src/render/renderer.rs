@@ -15,7 +15,7 @@ use crate::device::hooks::recording::RecordingBackend;
 use crate::device::kernels::Mutation;
 use crate::device::opencl::{CacheFolder, Faults};
 use crate::device::profiles::Profile;
-use crate::error::{Error, Result};
+use crate::error::{Error, Remedy, Result, Setting};
 use crate::layout::PLANE_COUNT;
 use crate::method::fallback::Fallback;
 use crate::method::frame::Frame;
@@ -214,10 +214,10 @@ impl Renderer {
             if !plan.is_one_window() {
                 return Err(Error::LimitExceeded {
                     what: "the wave model".into(),
-                    limit: "--memory-budget".into(),
+                    limit: Setting::MemoryBudget.path().into(),
                     wanted: format!("all {} rows of samples in memory", params.height),
                     allowed: format!("{} rows", plan.rows()),
-                    remedy: "choose a smaller --size or a larger --memory-budget".into(),
+                    remedies: &[Remedy::SmallerPicture, Remedy::LargerBudget],
                 });
             }
             let backend = &mut WatchedBackend::new(backend, &self.monitor);

@@ -173,7 +173,8 @@ fn extent(scene: &Scene, tell: Tell) {
         tell(severity, "extent", message);
     }
     if given > 4.0 * all || given < 0.1 * most {
-        let message = format!("extent is {given}, but the scene is {all} long; `--t-pos` is relative to the extent");
+        let message =
+            format!("extent is {given}, but the scene is {all} long; the tolerance `t_pos` is relative to the extent");
         tell(Severity::Warning, "extent", message);
     }
 }

@@ -275,7 +275,7 @@ pub struct View {
     pub ambient: Vec3,
     /// What a ray that hits nothing sees, linear RGB.
     pub background: Vec3,
-    /// Size of the room in scene units: the length that `--t-pos` is relative to.
+    /// Size of the room in scene units: the length that the tolerance `t_pos` is relative to.
     pub extent: f32,
 }
 

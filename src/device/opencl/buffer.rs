@@ -102,7 +102,7 @@ impl Door {
             limit: "address space of this program".into(),
             wanted: format!("{bytes} bytes"),
             allowed: format!("{} bytes", usize::MAX),
-            remedy: String::new(),
+            remedies: &[],
         })?;
         self.shared.reserve(&what, bytes)?;
         // SAFETY: the context is alive, and no host pointer is given.

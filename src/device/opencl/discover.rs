@@ -88,7 +88,7 @@ unsafe impl Sync for DeviceId {}
 /// All devices, best first, and what was passed over.
 #[derive(Debug, Clone)]
 pub struct Discovery {
-    /// Usable devices: GPUs, then CPUs, PoCL before other software. `--device opencl:N` counts in this order.
+    /// Usable devices: GPUs, then CPUs, PoCL before other software. `opencl:N` counts in this order.
     pub devices: Vec<DeviceFound>,
     /// Libraries, platforms and devices that could not be used, each with the reason.
     pub skipped: Vec<String>,

@@ -17,8 +17,9 @@ use super::limits::Limits;
 use super::slices::Planner;
 use super::timing::{Timing, Wait};
 use crate::device::profiles::{Choices, Profile};
+use crate::error::{Remedy, Setting};
 use crate::monitor::Monitor;
-use crate::{Error, Result, error::Setting};
+use crate::{Error, Result};
 
 /// How long after a failed build a cancel may still arrive.
 const CANCEL_ARRIVES: Duration = Duration::from_millis(100);
@@ -72,10 +73,10 @@ impl Shared {
         if let Some(budget) = self.budget_bytes.filter(|&budget| total > budget) {
             return Err(Error::LimitExceeded {
                 what: format!("{what}, with {} bytes in use", memory.current_bytes),
-                limit: "--memory-budget".into(),
+                limit: Setting::MemoryBudget.path().into(),
                 wanted: format!("{total} bytes"),
                 allowed: format!("{budget} bytes"),
-                remedy: "raise the budget, or use a smaller picture or scene".into(),
+                remedies: &[Remedy::LargerBudget, Remedy::SmallerPicture, Remedy::SmallerScene],
             });
         }
         memory.current_bytes = total;

@@ -2,10 +2,17 @@
 //! What may be asked of a device: its own answers, clamped by a profile, and the checks against them.
 
 use crate::device::profiles::Profile;
+use crate::error::Remedy;
 use crate::{Error, Result};
 
-/// The remedy where no option makes a request smaller.
-const OTHER_DEVICE: &str = "use another device, or --device cpu";
+/// What a limit's check gives as remedies.
+type Remedies = &'static [Remedy];
+
+/// The remedies where no setting makes a request smaller.
+const OTHER_DEVICE: Remedies = &[Remedy::OtherDevice, Remedy::CpuTwin];
+const SMALLER: Remedies = &[Remedy::SmallerPicture, Remedy::SmallerScene];
+const SMALLER_WORK_GROUP: Remedies = &[Remedy::SmallerWorkGroup];
+const BUFFERS: Remedies = &[Remedy::BufferMemory];
 
 /// The limits that the door enforces. A number without a known limit is the largest of its type.
 #[derive(Debug, Clone, PartialEq)]
@@ -174,7 +181,15 @@ impl Limits {
     }
 
     /// An error if `wanted` is above `allowed`.
-    fn most(&self, what: &str, key: &'static str, wanted: u64, allowed: u64, unit: &str, remedy: &str) -> Result<()> {
+    fn most(
+        &self,
+        what: &str,
+        key: &'static str,
+        wanted: u64,
+        allowed: u64,
+        unit: &str,
+        remedies: Remedies,
+    ) -> Result<()> {
         if wanted <= allowed {
             return Ok(());
         }
@@ -183,41 +198,41 @@ impl Limits {
             limit: self.name(key),
             wanted: format!("{wanted}{unit}"),
             allowed: format!("{allowed}{unit}"),
-            remedy: remedy.to_string(),
+            remedies,
         })
     }
 
     /// Checks the size of one buffer.
     pub fn check_alloc(&self, what: &str, bytes: u64) -> Result<()> {
-        let remedy = "use a smaller picture or scene";
-        self.most(what, "cl_device_max_mem_alloc_size", bytes, self.max_mem_alloc_bytes, " bytes", remedy)
+        let remedies = SMALLER;
+        self.most(what, "cl_device_max_mem_alloc_size", bytes, self.max_mem_alloc_bytes, " bytes", remedies)
     }
 
     /// Checks all buffers together: `used` bytes so far and `bytes` more.
     pub fn check_total(&self, what: &str, used: u64, bytes: u64) -> Result<()> {
         let what = format!("{what}, with {used} bytes in use");
         let total = used.saturating_add(bytes);
-        let remedy = "use a smaller picture or scene";
-        self.most(&what, "cl_device_global_mem_size", total, self.global_mem_bytes, " bytes", remedy)
+        let remedies = SMALLER;
+        self.most(&what, "cl_device_global_mem_size", total, self.global_mem_bytes, " bytes", remedies)
     }
 
     /// Checks the shape of a work-group for a kernel that runs at most `kernel_cap` work-items.
     pub fn check_work_group(&self, what: &str, local: [usize; 2], kernel_cap: u64, barrier: bool) -> Result<()> {
         let sides = local.map(|side| side as u64);
         let total = sides[0].saturating_mul(sides[1]);
-        let remedy = "choose a smaller work-group in the profile's `choices`";
+        let remedies = SMALLER_WORK_GROUP;
         let unit = " work-items";
         for (axis, side) in sides.into_iter().enumerate() {
             let what = format!("side {axis} of the work-group of {what}");
             let allowed = self.max_work_item_sizes[axis];
-            self.most(&what, "cl_device_max_work_item_sizes", side, allowed, unit, remedy)?;
+            self.most(&what, "cl_device_max_work_item_sizes", side, allowed, unit, remedies)?;
         }
         let what = format!("the {}x{} work-group of {what}", local[0], local[1]);
-        self.most(&what, "cl_device_max_work_group_size", total, self.max_work_group_size, unit, remedy)?;
+        self.most(&what, "cl_device_max_work_group_size", total, self.max_work_group_size, unit, remedies)?;
         if barrier {
             let allowed = self.barrier_work_group_size;
             let what = format!("{what}, which has barriers,");
-            self.most(&what, "cl_kernel_work_group_size", total, allowed, unit, remedy)?;
+            self.most(&what, "cl_kernel_work_group_size", total, allowed, unit, remedies)?;
         }
         if total > kernel_cap {
             return Err(Error::LimitExceeded {
@@ -225,7 +240,7 @@ impl Limits {
                 limit: "CL_KERNEL_WORK_GROUP_SIZE".into(),
                 wanted: format!("{total}{unit}"),
                 allowed: format!("{kernel_cap}{unit}"),
-                remedy: remedy.into(),
+                remedies,
             });
         }
         Ok(())
@@ -245,7 +260,7 @@ impl Limits {
     /// Checks the local memory of a work-group, in bytes.
     pub fn check_local_memory(&self, what: &str, bytes: u64) -> Result<()> {
         let what = format!("the local memory of {what}");
-        self.most(&what, "cl_device_local_mem_size", bytes, self.local_mem_bytes, " bytes", "use a smaller work-group")
+        self.most(&what, "cl_device_local_mem_size", bytes, self.local_mem_bytes, " bytes", SMALLER_WORK_GROUP)
     }
 
     /// Checks the bytes of all arguments of a kernel.
@@ -262,57 +277,43 @@ impl Limits {
         let what = format!("a constant argument of {what}");
         sizes.iter().try_for_each(|&bytes| {
             let allowed = self.max_constant_buffer_bytes;
-            let remedy = "use fewer lights, another device, or --device cpu";
-            self.most(&what, "cl_device_max_constant_buffer_size", bytes, allowed, " bytes", remedy)
+            let remedies = &[Remedy::FewerLights, Remedy::OtherDevice, Remedy::CpuTwin];
+            self.most(&what, "cl_device_max_constant_buffer_size", bytes, allowed, " bytes", remedies)
         })
     }
 
     /// Checks the number of images that a kernel reads and writes.
     pub fn check_image_args(&self, what: &str, read: u64, written: u64) -> Result<()> {
         let read_what = format!("the number of images read by {what}");
-        self.most(
-            &read_what,
-            "cl_device_max_read_image_args",
-            read,
-            self.read_image_args,
-            "",
-            "use the memory path `buffers`",
-        )?;
+        self.most(&read_what, "cl_device_max_read_image_args", read, self.read_image_args, "", BUFFERS)?;
         let what = format!("the number of images written by {what}");
-        self.most(
-            &what,
-            "cl_device_max_write_image_args",
-            written,
-            self.write_image_args,
-            "",
-            "use the memory path `buffers`",
-        )
+        self.most(&what, "cl_device_max_write_image_args", written, self.write_image_args, "", BUFFERS)
     }
 
     /// Checks a 2D image, of `layers` layers if it is an array (else 1).
     pub fn check_image2d(&self, what: &str, width: u64, height: u64, layers: u64) -> Result<()> {
         self.check_images(what)?;
-        let remedy = "use the memory path `buffers`";
+        let remedies = BUFFERS;
         let pixels = " pixels";
         let side = format!("the width of {what}");
-        self.most(&side, "cl_device_image2d_max_width", width, self.image2d[0], pixels, remedy)?;
+        self.most(&side, "cl_device_image2d_max_width", width, self.image2d[0], pixels, remedies)?;
         let side = format!("the height of {what}");
-        self.most(&side, "cl_device_image2d_max_height", height, self.image2d[1], pixels, remedy)?;
-        self.most(what, "cl_device_image_max_array_size", layers, self.image_layers.max(1), " layers", remedy)
+        self.most(&side, "cl_device_image2d_max_height", height, self.image2d[1], pixels, remedies)?;
+        self.most(what, "cl_device_image_max_array_size", layers, self.image_layers.max(1), " layers", remedies)
     }
 
     /// Checks a 1D image on top of a buffer.
     pub fn check_image_buffer(&self, what: &str, texels: u64) -> Result<()> {
         self.check_images(what)?;
-        let remedy = "use the memory path `buffers`";
+        let remedies = BUFFERS;
         let allowed = self.image_buffer_texels;
-        self.most(what, "cl_device_image_max_buffer_size", texels, allowed, " texels", remedy)
+        self.most(what, "cl_device_image_max_buffer_size", texels, allowed, " texels", remedies)
     }
 
     fn check_images(&self, what: &str) -> Result<()> {
         let wanted = u64::from(!self.image_support);
-        let remedy = "use the memory path `buffers`";
-        self.most(what, "cl_device_image_support", wanted, 0, " image", remedy)
+        let remedies = BUFFERS;
+        self.most(what, "cl_device_image_support", wanted, 0, " image", remedies)
     }
 
     /// Checks that a sub-buffer may start at `offset` bytes.
@@ -326,7 +327,7 @@ impl Limits {
             limit: self.name("cl_device_mem_base_addr_align"),
             wanted: format!("a start at byte {offset}"),
             allowed: format!("multiples of {align} bytes"),
-            remedy: "round the start up".into(),
+            remedies: &[Remedy::RoundedStart],
         })
     }
 
@@ -340,7 +341,7 @@ impl Limits {
             limit: self.name("cl_device_extensions"),
             wanted: extension.to_string(),
             allowed: if self.extensions.is_empty() { "no extension".into() } else { self.extensions.join(" ") },
-            remedy: OTHER_DEVICE.into(),
+            remedies: OTHER_DEVICE,
         })
     }
 
@@ -354,7 +355,7 @@ impl Limits {
             limit: self.name("cl_device_version"),
             wanted: format!("OpenCL {}.{}", wanted.0, wanted.1),
             allowed: format!("OpenCL {}.{}", self.version.0, self.version.1),
-            remedy: OTHER_DEVICE.into(),
+            remedies: OTHER_DEVICE,
         })
     }
 
@@ -368,7 +369,7 @@ impl Limits {
             items,
             allowed,
             " work-items",
-            "use a smaller picture",
+            &[Remedy::SmallerPicture],
         )
     }
 }
@@ -411,7 +412,7 @@ mod tests {
         assert_eq!(
             message,
             "buffer `nodes` needs 314572800 bytes, the limit `CL_DEVICE_MAX_MEM_ALLOC_SIZE of profile adreno-420` \
-             allows 268435456 bytes (use a smaller picture or scene)"
+             allows 268435456 bytes (use a smaller picture or a smaller scene)"
         );
         assert!(limits.check_alloc("b", 256 << 20).is_ok());
         assert!(limits.check_total("b", 1 << 30, 1).is_err());

@@ -11,6 +11,7 @@ use opencl3::event::{
 use super::codes;
 use super::handle::Handle;
 use super::slices::Planner;
+use crate::error::Remedy;
 use crate::{Error, Result};
 
 /// One launch whose event was not yet read.
@@ -125,7 +126,7 @@ impl Timing {
                     limit: "gpu_batch_timeout_ms of the profile".into(),
                     wanted: format!("{ms:.0} ms"),
                     allowed: format!("{allowed} ms"),
-                    remedy: "lower `slice_ms` in the profile's `choices`".into(),
+                    remedies: &[Remedy::ShorterSlices],
                 });
             } else {
                 log::warn!("one work-group of `{}` took {ms:.0} ms: the phone would kill it", done.label);

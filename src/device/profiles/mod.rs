@@ -2,7 +2,7 @@
 //! Device profiles: what a phone's OpenCL allows, as data, so that a desktop refuses what the phone would refuse.
 //!
 //! A profile holds one entry per OpenCL query (key: the query's name in lower case), each with its value, certainty and
-//! source, plus facts about the hardware and the choices that suit it. `rarefy devices --json` writes the same format,
+//! source, plus facts about the hardware and the choices that suit it. a dump of a device (`rarefy devices`) has the same format,
 //! so a dump of a phone is a profile. A query that is absent or `null` sets no limit.
 
 mod choices;
@@ -136,7 +136,7 @@ impl Profile {
         }
     }
 
-    /// Reads a profile file, or a dump of `rarefy devices --json` (its first device; another one with `#N` appended to
+    /// Reads a profile file, or a dump of `rarefy devices` (its first device; another one with `#N` appended to
     /// the path, from 0).
     pub fn load(path: &Path) -> Result<Self> {
         let (path, index) = match path.to_str().and_then(|text| text.rsplit_once('#')) {
@@ -217,7 +217,7 @@ impl Profile {
             }
         }
         if !map.contains_key("limits") {
-            return Err(bad(place, "has no `limits`; see `rarefy devices --json` for the format"));
+            return Err(bad(place, "has no `limits`, as a dump of a device has them"));
         }
         Ok(profile)
     }

@@ -21,7 +21,7 @@ use fired::FiredPixels;
 pub use plan::Plan;
 
 use crate::device::backend::{Backend, FrameBuffer};
-use crate::error::{Error, Result};
+use crate::error::{Error, Remedy, Result, Setting};
 use crate::layout::FrameParams;
 use crate::method::frame::Keep;
 use crate::method::options::{Correction, Mode, RenderOptions};
@@ -70,10 +70,10 @@ pub fn draw(
     if matches!(options.method.correction, Correction::Sweeps(_)) {
         return Err(Error::LimitExceeded {
             what: "post-correction by sweeps".into(),
-            limit: "--memory-budget".into(),
+            limit: Setting::MemoryBudget.path().into(),
             wanted: format!("all {} rows of samples in memory", whole.height),
             allowed: format!("{} rows", plan.rows()),
-            remedy: "choose --correction-method converged, a larger --memory-budget or a smaller picture".into(),
+            remedies: &[Remedy::ConvergedCorrection, Remedy::LargerBudget, Remedy::SmallerPicture],
         });
     }
     let mut chains = Chains { fired: FiredPixels::new(whole.width, whole.height), pending: BTreeSet::new() };

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use super::Room;
 use crate::device::backend::BufferSizes;
-use crate::error::{Error, Result};
+use crate::error::{Error, Remedy, Result, Setting};
 use crate::layout::{FrameParams, PLANE_COUNT};
 
 /// A frame cut into bands of whole rows of blocks.
@@ -117,7 +117,8 @@ impl Room {
     }
 
     fn holds(&self, sizes: &BufferSizes) -> bool {
-        sizes.bytes() <= self.total_bytes && sizes.largest_bytes() <= self.allocation_bytes
+        sizes.bytes().saturating_add(self.scene_bytes) <= self.total_bytes
+            && sizes.largest_bytes() <= self.allocation_bytes
     }
 
     fn too_small(&self, frame: &FrameParams) -> Error {
@@ -125,14 +126,14 @@ impl Room {
         let wanted = self.sizes(frame).map_or(u64::MAX, |sizes| sizes.bytes());
         Error::LimitExceeded {
             what: format!("a band of {rows} rows of {} samples", frame.width),
-            limit: "--memory-budget".into(),
+            limit: Setting::MemoryBudget.path().into(),
             wanted: format!("{} KiB beside the scene's {} KiB", wanted.div_ceil(1 << 10), self.scene_bytes >> 10),
             allowed: format!(
                 "{} KiB in all, {} KiB in one buffer",
-                (self.total_bytes + self.scene_bytes) >> 10,
+                self.total_bytes >> 10,
                 self.allocation_bytes >> 10
             ),
-            remedy: "choose a larger --memory-budget, fewer --samples or a smaller --size".into(),
+            remedies: &[Remedy::LargerBudget, Remedy::FewerSamples, Remedy::SmallerPicture],
         }
     }
 }
@@ -241,6 +242,13 @@ mod tests {
             }
             assert_eq!(at, height);
         }
+        // A refusal names the memory that there is for everything, also where the scene alone is larger.
+        let (total_bytes, scene_bytes) = (100 << 10, 300 << 10);
+        let (attributes, counters, scan_group) = (true, false, 64);
+        let room = Room { total_bytes, allocation_bytes: u64::MAX, scene_bytes, attributes, counters, scan_group };
+        let frame = frame_params(scene.view(), &buffers, 16, 16, 2, 4);
+        let refusal = Plan::new(&frame, &room, None).unwrap_err().to_string();
+        assert!(refusal.contains("scene's 300 KiB") && refusal.contains("allows 100 KiB in all"), "{refusal}");
         println!("{planned} frames planned, {cut} of them in bands, {refused} refused");
         assert!(planned > 1000 && refused > 100 && cut > 200);
     }

@@ -11,8 +11,9 @@ use glam::Vec3;
 use super::clip::{Cell, Corners, Primitive, cell_epsilon, split_primitive, whole};
 use super::sah::{Costs, Scratch, Split, best_split};
 use super::{KdNode, KdTree, MAX_DEPTH};
+use crate::error::{Remedy, Setting};
 use crate::monitor::Monitor;
-use crate::{Error, Result, error::Setting};
+use crate::{Error, Result};
 
 /// Cost of an inner node on a ray's way, the unit of [`INTERSECTION_COST`].
 const TRAVERSAL_COST: f32 = 1.0;
@@ -200,7 +201,7 @@ fn budget_bytes(triangles: u64, options: &BuildOptions) -> Result<u64> {
             limit: "memory_limit_bytes".into(),
             wanted: format!("at least {wanted} bytes"),
             allowed: format!("{allowed} bytes"),
-            remedy: "raise the limit or use a smaller scene".into(),
+            remedies: &[Remedy::SmallerScene],
         });
     }
     Ok((allowed - fixed).min((MAX_BYTES_PER_TRIANGLE * triangles).max(MIN_BUDGET_BYTES)))

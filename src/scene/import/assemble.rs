@@ -11,6 +11,7 @@ use super::obj::{self, FAR_TEXCOORD, MISSING, ObjFile};
 use super::options::reserve;
 use super::source::Source;
 use super::triangulate::{self, Split, Work};
+use crate::error::Remedy;
 use crate::math::pack_normal;
 use crate::monitor::Monitor;
 use crate::scene::{MAX_COORDINATE, MAX_TRIANGLES, Object, check};
@@ -87,7 +88,7 @@ pub(super) fn assemble(
             limit: "triangles".into(),
             wanted: format!("{total} triangles, {vertices} vertices"),
             allowed: format!("{MAX_TRIANGLES}"),
-            remedy: "split the scene".into(),
+            remedies: &[Remedy::SmallerScene],
         });
     }
     reserve(&mut geometry.positions, vertices, path)?;

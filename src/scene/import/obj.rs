@@ -26,6 +26,7 @@ use super::lines::{LogicalLines, MAX_OBJ_BYTES, keyword, name_text, without_comm
 use super::locate;
 use super::options::reserve;
 use super::source::Source;
+use crate::error::Remedy;
 use crate::monitor::Monitor;
 use crate::scene::MAX_COORDINATE;
 use crate::{Error, Result};
@@ -268,7 +269,7 @@ impl<'a> Feed<'a> {
                             limit: "corners of a face".into(),
                             wanted: format!("{corners} corners"),
                             allowed: format!("{}", self.options.max_face_corners),
-                            remedy: "triangulate it in the modelling program".into(),
+                            remedies: &[Remedy::TriangulatedFaces],
                         });
                     }
                     Ok(corners) if corners >= 3 => {
@@ -448,7 +449,7 @@ fn too_many(path: &Path, count: usize, what: &str, most: usize) -> Error {
         limit: what.into(),
         wanted: format!("{count} {what} or more"),
         allowed: most.to_string(),
-        remedy: "split the scene".into(),
+        remedies: &[Remedy::SmallerScene],
     }
 }
 

@@ -7,6 +7,7 @@ use std::io::{self, Cursor, Read, Seek, SeekFrom};
 use std::path::{Component, Path, PathBuf};
 
 use super::LoadOptions;
+use crate::error::Remedy;
 use crate::files::{self, InputFile};
 use crate::{Error, Result};
 
@@ -154,7 +155,7 @@ impl<'a> Source<'a> {
                 limit: "file size".to_owned(),
                 wanted: format!("{} bytes", bytes.len()),
                 allowed: format!("{max_bytes} bytes"),
-                remedy: "is this the right file?".to_owned(),
+                remedies: &[Remedy::SmallerFile],
             });
         }
         Ok(bytes)

@@ -9,6 +9,7 @@ use image::{ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
 
 use super::LoadOptions;
 use super::find::{Finder, Found};
+use crate::error::Remedy;
 use crate::monitor::Monitor;
 use crate::scene::{MAX_TEXTURE_SIDE, Texture};
 use crate::{Error, Result};
@@ -212,7 +213,7 @@ impl<'a> Textures<'a> {
                 limit: limit.into(),
                 wanted,
                 allowed,
-                remedy: "scale the picture down".into(),
+                remedies: &[Remedy::ScaledPictures],
             })
         };
         if width > MAX_TEXTURE_SIDE || height > MAX_TEXTURE_SIDE {

@@ -8,7 +8,7 @@
 //! | `camera.eye`, `camera.look_at` | positions in scene units; must differ | camera fitted to the scene, with a warning |
 //! | `camera.up` | direction, not parallel to the line of sight | `[0, 1, 0]` |
 //! | `camera.fov_y_degrees` | vertical field of view, above 0 and below 180 | 45 |
-//! | `extent` | size of the room in scene units, above 0: what `--t-pos` is relative to | longest side of the 1st-99th percentile box of the vertices, with a warning |
+//! | `extent` | size of the room in scene units, above 0: what the tolerance `t_pos` is relative to | longest side of the 1st-99th percentile box of the vertices, with a warning |
 //! | `lights[].position` | in scene units; at most 32 lights | one light fitted to the scene, with a warning |
 //! | `lights[].intensity` | RGB or number, not negative; reflected radiance is `Kd * intensity * cos / distance^2` | 1 |
 //! | `suggested_ambient` | RGB or number, not negative: the ambient light | 0.12 |

@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! The tables of docs/method.md: `cargo bench -p rarefy-host-tests --bench method_tables -- [SIZE [PART ...]]`.
+//!
+//! Draws the scenes of `../shared/scenes` in full and by each variant of the method, SIZE x SIZE pixels (1024 by default),
+//! on the CPU twin, and prints rows in Markdown as they are done: means of the six scenes, for some parts each scene.
+//! PART is part of a table's name; all by default.
+#![allow(clippy::unwrap_used, missing_docs)]
+
+use rarefy::analysis::metrics::{self, Rgb8};
+use rarefy::layout::{PLANE_OBJECT, PLANE_SHADOW};
+use rarefy::method::frame::FrameStats;
+use rarefy::method::options::*;
+use rarefy::render::renderer::{DeviceChoice, Keep, Renderer, RendererOptions};
+use rarefy_host_tests::command::root;
+
+const SCENES: [(&str, &str); 6] = [
+    ("modern-hall", "hall"),
+    ("figures", "figures"),
+    ("classroom", "classroom"),
+    ("living-room", "living-room"),
+    ("bathroom", "bathroom"),
+    ("kitchen", "kitchen"),
+];
+
+/// A method with what the table calls it.
+type Variant = (String, Method);
+
+fn ours(label: &str, change: impl FnOnce(&mut Method)) -> Variant {
+    let mut method = Method::balanced();
+    change(&mut method);
+    (label.to_owned(), method)
+}
+
+fn fast(label: &str, change: impl FnOnce(&mut Method)) -> Variant {
+    let mut method = Method::fast();
+    change(&mut method);
+    (label.to_owned(), method)
+}
+
+/// Both levels' tolerances scaled: distances and slopes times `factor`, and as much farther from 1 the dot product.
+fn scaled(name: &str, mut method: Method, factor: f32) -> Variant {
+    for t in [&mut method.checks.fine, &mut method.checks.coarse] {
+        let t_norm = 1.0 - factor * (1.0 - t.t_norm);
+        *t = Tolerances {
+            t_pos: factor * t.t_pos,
+            t_norm,
+            t_conv: (factor * t.t_conv).min(1.0),
+            t_gcol: factor * t.t_gcol,
+            ..*t
+        };
+    }
+    (format!("{name} x {factor}"), method)
+}
+
+fn set_rules(method: &mut Method, thin: bool, gaps: bool) {
+    let compared = method.correction.compared().unwrap();
+    method.correction = Correction::Converged { compared, thin_only: thin, bridges: gaps };
+}
+
+fn tables() -> Vec<(&'static str, Vec<Variant>)> {
+    let compare = |label: &str, compared| ours(label, |m| m.correction = m.correction.comparing(compared));
+    let shadow = |t: u8| ours(&format!("`--t-shadow {t}`"), |m| m.checks.t_shadow = t);
+    let fast_shadow = |t: u8| fast(&format!("`--method fast --t-shadow {t}`"), |m| m.checks.t_shadow = t);
+    let conv = |t: f32| ours(&format!("`--t-conv {t}`"), |m| m.checks.fine.t_conv = t);
+    let gcol = |t: f32| ours(&format!("display, `--t-gcol {t}`"), |m| m.checks.fine.t_gcol = t);
+    let Compared::All { t_norm, t_gcol, .. } = Compared::VISIBLE else { unreachable!() };
+    let visible = "object+shadow".parse().unwrap();
+    let without_all = ours("without all five", |m| {
+        (m.checks.second_pairs, m.checks.textures, m.reuse_shadows) = (false, TextureRule::Border, false);
+        set_rules(m, false, false);
+    });
+    let factors = [0.5, 1.0, 1.75, 2.0, 4.0];
+    let mut equal: Vec<Variant> = factors.iter().map(|&f| scaled("paper", Method::paper(), f)).collect();
+    equal.extend(factors.iter().map(|&f| scaled("ours", Method::balanced(), f)));
+    vec![
+        ("presets", Preset::ALL.map(|p| (p.to_string(), p.into())).into()),
+        ("fast-shadows", [0, 4, 8, 12].map(fast_shadow).into()),
+        ("shadows", [0, 4, 8, 12].map(shadow).into()),
+        ("fast-scaled", vec![scaled("exact fast", fast_shadow(0).1, 1.5), scaled("exact fast", fast_shadow(0).1, 2.0)]),
+        ("paper", vec![ours("the paper's tolerances in our rules", |m| m.checks.fine = Tolerances::PAPER)]),
+        (
+            "rules",
+            vec![
+                ours("all five (default)", |_| ()),
+                ours("without second pairs", |m| m.checks.second_pairs = false),
+                ours("textures not joined", |m| m.checks.textures = TextureRule::Border),
+                ours("every light asked", |m| m.reuse_shadows = false),
+                ours("correction at edges and beside lines too", |m| set_rules(m, false, true)),
+                ours("no correction across gaps", |m| set_rules(m, true, false)),
+                without_all,
+            ],
+        ),
+        ("flat", [0.0, 0.01, 0.05, 0.1, 0.2].map(conv).into()),
+        ("interpolation", vec![ours("`--interpolation plain`", |m| m.interpolation = Interpolation::Plain)]),
+        (
+            "reflections",
+            vec![
+                gcol(0.05),
+                gcol(0.09),
+                gcol(0.15),
+                ours("`--gcol-space linear`, 0.05", |m| m.checks.gcol_space = GcolSpace::Linear),
+            ],
+        ),
+        (
+            "correction",
+            vec![
+                ours("`--correction off`", |m| m.correction = Correction::Off),
+                compare("`--correction object`", Compared::Object),
+                compare("`--correction object+shadow` (paper)", visible),
+                compare("`--correction all` (default)", Compared::VISIBLE),
+                compare("`all --correction-t-visible 0`", Compared::All { t_visible: 0, t_norm, t_gcol }),
+                ours("`all --correction-method sweeps`", |m| m.correction = m.correction.spreading(Spread::Sweeps)),
+            ],
+        ),
+        (
+            "coarse",
+            vec![
+                fast("COARSE + FINE (`fast`)", |_| ()),
+                fast("the paper's tolerances at both levels", |m| {
+                    m.checks = m.checks.at_all_levels(Tolerances::PAPER);
+                }),
+                fast("`--correction object+shadow`", |m| m.correction = m.correction.comparing(visible)),
+            ],
+        ),
+        ("equal", equal),
+        ("ablation", Test::ALL.map(|test| ours(test.name(), |m| m.checks.tests = m.checks.tests.without(test))).into()),
+    ]
+}
+
+struct Scene {
+    name: &'static str,
+    renderer: Renderer,
+    full: Vec<u32>,
+    stats: FrameStats,
+    objects: Vec<u32>,
+    shadows: Vec<u32>,
+}
+
+#[derive(Clone, Copy, Default)]
+struct Row {
+    traced: f64,
+    corrected: f64,
+    psnr: f64,
+    flip: f64,
+    flip_p99: f64,
+    work: f64,
+    correction: f64,
+    object: f64,
+    cluster: f64,
+    shadow: f64,
+    packed: f64,
+}
+
+impl Row {
+    fn print(&self, label: &str) {
+        println!(
+            "| {label} | {:.4} | {:.4} | {:.2} | {:.4} | {:.2} | {:.1} % | {:.0} | {:.0} |   cluster {:.0}, p99 {:.3}, packed {:.2}",
+            self.traced,
+            self.corrected,
+            self.psnr,
+            self.flip,
+            self.work,
+            100.0 * self.correction,
+            self.object,
+            self.shadow,
+            self.cluster,
+            self.flip_p99,
+            self.packed
+        );
+    }
+
+    /// Geometric for shares of traced pixels and for work, the largest cluster, arithmetic for the others.
+    fn mean(rows: &[Row]) -> Row {
+        let n = rows.len() as f64;
+        let mean = |f: fn(&Row) -> f64| rows.iter().map(f).sum::<f64>() / n;
+        Row {
+            traced: mean(|r| r.traced.ln()).exp(),
+            corrected: mean(|r| r.corrected.ln()).exp(),
+            psnr: mean(|r| r.psnr),
+            flip: mean(|r| r.flip),
+            flip_p99: mean(|r| r.flip_p99),
+            work: mean(|r| r.work.ln()).exp(),
+            correction: mean(|r| r.correction),
+            object: mean(|r| r.object),
+            cluster: rows.iter().map(|r| r.cluster).fold(0.0, f64::max),
+            shadow: mean(|r| r.shadow),
+            packed: mean(|r| r.packed),
+        }
+    }
+}
+
+fn options(size: u32, mode: Mode, method: Method) -> RenderOptions {
+    RenderOptions { width: size, height: size, mode, method, ..RenderOptions::default() }
+}
+
+fn keep() -> Keep {
+    Keep::planes(&[PLANE_OBJECT, PLANE_SHADOW]).and(Keep::COUNTERS)
+}
+
+fn load(folder: &str, name: &'static str, size: u32) -> Option<Scene> {
+    let path = root().join("../shared/scenes").join(folder);
+    if !path.is_dir() {
+        println!("skipped: {} is not here", path.display());
+        return None;
+    }
+    let monitor = rarefy::Monitor::default();
+    let device = RendererOptions { device: DeviceChoice::Cpu, ..RendererOptions::default() };
+    let mut renderer = Renderer::new(rarefy::scene::load(&path, &monitor).unwrap(), &device, &monitor).unwrap();
+    let frame = renderer.render_exactly(&options(size, Mode::Full, Method::default()), keep()).unwrap();
+    let (objects, shadows) = (renderer.plane(PLANE_OBJECT).unwrap(), renderer.plane(PLANE_SHADOW).unwrap());
+    Some(Scene { name, renderer, full: frame.pixels, stats: frame.stats, objects, shadows })
+}
+
+fn measure(scene: &mut Scene, size: u32, method: Method) -> Row {
+    let frame = scene.renderer.render_exactly(&options(size, Mode::Adaptive, method), keep()).unwrap();
+    let picture = |pixels| Rgb8::new(size, size, pixels).unwrap();
+    let (full, test) = (picture(&scene.full), picture(&frame.pixels));
+    let flip = metrics::flip(full, test).unwrap();
+    let mut wrong = |plane, reference: &[u32]| {
+        metrics::wrong_pixels(reference, &scene.renderer.plane(plane).unwrap(), size, size).unwrap()
+    };
+    let object = wrong(PLANE_OBJECT, &scene.objects);
+    let shadow = wrong(PLANE_SHADOW, &scene.shadows);
+    let work = |stats: &FrameStats| stats.work.unwrap().traversal() as f64;
+    let by_class = frame.stats.work_by_class.unwrap().map(|work| work as f64);
+    let average = work(&scene.stats) / f64::from(size * size);
+    Row {
+        traced: frame.stats.ray_traced_ratio(),
+        corrected: frame.stats.ray_traced_ratio_with_correction(),
+        psnr: metrics::psnr(full, test).unwrap().unwrap_or(f64::INFINITY),
+        flip: flip.mean,
+        flip_p99: flip.p99,
+        work: work(&scene.stats) / work(&frame.stats),
+        correction: by_class[2] / by_class.iter().sum::<f64>(),
+        object: object.count as f64,
+        cluster: object.largest_cluster as f64,
+        shadow: shadow.count as f64,
+        packed: by_class[1] / frame.stats.pixels.traced.max(1) as f64 / average,
+    }
+}
+
+fn main() {
+    let words: Vec<String> = std::env::args().skip(1).filter(|word| !word.starts_with("--")).collect();
+    let size = words.first().map_or(1024, |word| word.parse().expect("the first argument is the size"));
+    let parts = words.get(1..).unwrap_or_default();
+    let mut scenes: Vec<Scene> = SCENES.iter().filter_map(|&(folder, name)| load(folder, name, size)).collect();
+    for (table, variants) in tables() {
+        if !parts.is_empty() && !parts.iter().any(|part| table.contains(part.as_str())) {
+            continue;
+        }
+        println!("\n{table}");
+        for (label, method) in variants {
+            let rows: Vec<Row> = scenes.iter_mut().map(|scene| measure(scene, size, method)).collect();
+            Row::mean(&rows).print(&label);
+            if matches!(table, "presets" | "ablation") {
+                rows.iter().zip(&scenes).for_each(|(row, scene)| row.print(&format!("{label} {}", scene.name)));
+            }
+        }
+    }
+}
