@@ -2,17 +2,16 @@
 //! Scene files changed at random: each gives a valid scene or an error, never a panic.
 #![allow(clippy::unwrap_used)]
 
-use std::fs;
+use std::collections::BTreeMap;
 
 use proptest::prelude::*;
-use rarefy::scene::{self, Scene};
+use rarefy::scene::{self, LoadOptions, Scene};
 
+/// From memory: thousands of folders would take their time.
 fn load(files: &[(&str, &[u8])]) -> rarefy::Result<Scene> {
-    let dir = tempfile::tempdir().unwrap();
-    for (name, bytes) in files {
-        fs::write(dir.path().join(name), bytes).unwrap();
-    }
-    scene::load(dir.path(), &rarefy::Monitor::default())
+    let files: BTreeMap<String, Vec<u8>> =
+        files.iter().map(|&(name, bytes)| (name.to_owned(), bytes.to_vec())).collect();
+    scene::load_from("scene.obj", &files, &LoadOptions::default(), &rarefy::Monitor::default())
 }
 
 /// Two by one texels.

@@ -79,6 +79,7 @@ impl<'a> Finder<'a> {
 
     /// The first step alone.
     pub(super) fn find_as_written(&mut self, folder: &Path, name: &str) -> Result<Found> {
+        self.monitor.check()?;
         let mut is_forbidden = false;
         let folders = self.folders(folder);
         for (is_exact, spelling) in spellings(name) {

@@ -13,6 +13,7 @@ use super::find::{Finder, Found, without_comment_and_quotes};
 use super::fit::{Extents, fitted_camera, fitted_light};
 use super::mtl::{self, MtlMaterial};
 use super::normals;
+use super::notices::Notices;
 use super::obj::{self, ObjFile};
 use super::source::{FileSource, Source};
 use super::texture::{Role, Textures};
@@ -276,23 +277,25 @@ fn read_libraries(
     let mut read_paths = HashSet::new();
     let mut materials: Vec<(PathBuf, MtlMaterial)> = Vec::new();
     let mut places: HashMap<String, usize> = HashMap::new();
+    let (mut own, mut told) = (Vec::new(), Notices::default());
     for (argument, line) in &file.libraries {
         for (name, found) in find_libraries(finder, folder, argument)? {
+            told.shorten(&mut own, 0);
             let at = obj.display();
             let lacks = |why: &str| format!("{at}:{line}: MTL file `{name}` {why}; its materials are drawn light grey");
             let path = match found {
                 Found::There(path) => path,
                 Found::Elsewhere(path) => {
                     let taken = path.display();
-                    warnings.push(format!("{at}:{line}: MTL file `{name}` not found there; {taken} is used"));
+                    own.push(format!("{at}:{line}: MTL file `{name}` not found there; {taken} is used"));
                     path
                 }
                 Found::Forbidden => {
-                    warnings.push(lacks("lies outside the scene's folder and may not be read"));
+                    own.push(lacks("lies outside the scene's folder and may not be read"));
                     continue;
                 }
                 Found::Nowhere => {
-                    warnings.push(lacks("not found"));
+                    own.push(lacks("not found"));
                     continue;
                 }
             };
@@ -306,7 +309,9 @@ fn read_libraries(
                 Err(e) => read.warnings.push(format!("{e}; its materials are drawn light grey")),
             }
             let textures = path.parent().unwrap_or(Path::new("")).to_path_buf();
+            let (mut again, before) = (Notices::default(), read.warnings.len());
             for m in read.materials {
+                again.shorten(&mut read.warnings, before);
                 match places.get(&m.name) {
                     Some(&i) => {
                         read.warnings.push(format!(
@@ -322,16 +327,20 @@ fn read_libraries(
                     }
                 }
             }
+            read.warnings.append(&mut again.take(&format!("more materials of {} are defined again", path.display())));
             // The words of a file that is none of the scene's are not for those who see the messages.
             if !read.warnings.is_empty() && source.is_outside(folder, &path) {
                 let (at, count) = (path.display(), read.warnings.len());
                 warnings
                     .push(format!("{at}: {count} things are wrong; not told, for it lies outside the scene's folder"));
             } else {
-                warnings.append(&mut read.warnings);
+                own.append(&mut read.warnings);
             }
         }
     }
+    told.shorten(&mut own, 0);
+    warnings.append(&mut own);
+    warnings.append(&mut told.take("more things are wrong with MTL files"));
     Ok(materials)
 }
 
@@ -341,12 +350,15 @@ struct Library {
     warnings: Vec<String>,
 }
 
+/// Most MTL files that one `mtllib` line may name.
+const MOST_LIBRARIES: usize = 1000;
+
 /// The files that an `mtllib` line names: one name with spaces, or several names.
 fn find_libraries(finder: &mut Finder, folder: &Path, argument: &str) -> Result<Vec<(String, Found)>> {
     let is_there = |found: &Found| matches!(found, Found::There(_) | Found::Elsewhere(_));
     let whole = finder.find_as_written(folder, argument)?;
     let words: Vec<&str> = argument.split_whitespace().collect();
-    if is_there(&whole) || words.len() < 2 {
+    if is_there(&whole) || !(2..=MOST_LIBRARIES).contains(&words.len()) {
         let found = if is_there(&whole) { whole } else { finder.find(folder, argument)? };
         return Ok(vec![(argument.to_owned(), found)]);
     }

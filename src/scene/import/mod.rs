@@ -9,6 +9,7 @@ mod load;
 mod locate;
 mod mtl;
 pub(super) mod normals;
+mod notices;
 mod obj;
 mod options;
 mod source;

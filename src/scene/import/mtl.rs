@@ -17,6 +17,7 @@ use glam::{Vec2, Vec3};
 
 use super::assemble::TexcoordMap;
 use super::lines::{LogicalLines, MAX_MTL_BYTES, keyword, name_text, without_comment, words};
+use super::notices::Notices;
 use super::source::Source;
 use crate::{Error, Result};
 
@@ -52,7 +53,9 @@ pub(super) fn read(source: &Source, path: &Path, warnings: &mut Vec<String>) -> 
         .map_err(|e| Error::scene(path.display().to_string(), format!("not a readable MTL file: {e}")))?;
     let mut read: Vec<MtlMaterial> = Vec::with_capacity(materials.len());
     let mut by_name: HashMap<String, usize> = HashMap::new();
+    let (mut told, before) = (Notices::default(), warnings.len());
     for m in materials {
+        told.shorten(warnings, before);
         let (name, line) = name_of(&checked, &m.name)?;
         let map = |number: &Option<String>| {
             number.as_ref().and_then(|n| n.parse().ok()).and_then(|n: usize| checked.maps.get(n).cloned())
@@ -82,6 +85,8 @@ pub(super) fn read(source: &Source, path: &Path, warnings: &mut Vec<String>) -> 
             }
         }
     }
+    told.shorten(warnings, before);
+    warnings.append(&mut told.take(&format!("more materials of {} are defined again", path.display())));
     Ok(read)
 }
 
@@ -106,7 +111,9 @@ struct Checked {
 fn check(source: &Source, path: &Path, warnings: &mut Vec<String>) -> Result<Checked> {
     let mut lines = LogicalLines::open(source, path, MAX_MTL_BYTES)?;
     let mut checked = Checked::default();
+    let (mut told, before) = (Notices::default(), warnings.len());
     while let Some((number, line)) = lines.next_line()? {
+        told.shorten(warnings, before);
         // A value that makes no sense has what it would be without it to fall back on.
         let at = path.display();
         let mut left_out = |message: String| warnings.push(format!("{at}:{number}: {message}; left out"));
@@ -199,6 +206,8 @@ fn check(source: &Source, path: &Path, warnings: &mut Vec<String>) -> Result<Che
             _ => {}
         }
     }
+    told.shorten(warnings, before);
+    warnings.append(&mut told.take(&format!("more things are wrong in {}", path.display())));
     Ok(checked)
 }
 
@@ -267,6 +276,7 @@ fn parse_map(text: &str) -> (Map, Vec<String>) {
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
+    use super::super::notices::MOST_TOLD;
     use super::*;
 
     fn read_text(text: &str) -> (Result<Vec<MtlMaterial>>, Vec<String>) {
@@ -339,6 +349,18 @@ mod tests {
         assert_eq!((materials[0].illumination_model, materials[1].name.as_str()), (Some(2), ""));
         assert!(warnings.iter().any(|w| w.contains("m.mtl:4: `illum 2.0` is taken for 2")), "{warnings:?}");
         assert!(warnings.iter().any(|w| w.contains("m.mtl:5: `newmtl` without a name")), "{warnings:?}");
+    }
+
+    #[test]
+    fn of_thousands_of_warnings_the_first_are_told() {
+        let (_, warnings) = read_text(&("newmtl a\n".to_owned() + &"Kd x\n".repeat(3000)));
+        assert_eq!(warnings.len(), MOST_TOLD + 1);
+        assert!(warnings[MOST_TOLD - 1].contains("m.mtl:51: ") && warnings[MOST_TOLD].contains("2950 more things"));
+        let (_, warnings) = read_text(&"newmtl a\n".repeat(3000));
+        assert!(
+            warnings.len() == MOST_TOLD + 1 && warnings[MOST_TOLD].starts_with("2949 more materials"),
+            "{warnings:?}"
+        );
     }
 
     #[test]

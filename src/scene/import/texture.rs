@@ -9,6 +9,7 @@ use image::{ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
 
 use super::LoadOptions;
 use super::find::{Finder, Found};
+use super::notices::Notices;
 use crate::error::Remedy;
 use crate::monitor::Monitor;
 use crate::scene::{MAX_TEXTURE_SIDE, Texture};
@@ -40,34 +41,6 @@ pub(super) struct Textures<'a> {
     monitor: &'a Monitor,
 }
 
-/// Sentences of which only the first few are told, since thousands may be alike.
-#[derive(Debug, Default)]
-struct Notices {
-    told: Vec<String>,
-    more: usize,
-}
-
-/// Sentences about textures that are told one by one.
-const MOST_TOLD: usize = 50;
-
-impl Notices {
-    fn push(&mut self, sentence: String) {
-        if self.told.len() < MOST_TOLD {
-            self.told.push(sentence);
-        } else {
-            self.more += 1;
-        }
-    }
-
-    fn take(&mut self) -> Vec<String> {
-        if self.more > 0 {
-            self.told.push(format!("{} more textures are missing, damaged or lie elsewhere", self.more));
-        }
-        self.more = 0;
-        std::mem::take(&mut self.told)
-    }
-}
-
 impl<'a> Textures<'a> {
     /// No textures yet; loading ends when `monitor` says so.
     pub(super) fn new(finder: Finder<'a>, options: &LoadOptions, monitor: &'a Monitor) -> Self {
@@ -85,7 +58,7 @@ impl<'a> Textures<'a> {
 
     /// What there is to tell since this was asked last.
     pub(super) fn take_warnings(&mut self) -> Vec<String> {
-        self.notices.take()
+        self.notices.take("more textures are missing, damaged or lie elsewhere")
     }
 
     /// The index of the texture `name`, written by a file in `folder`; `None` and a warning if there is no such picture.
