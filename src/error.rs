@@ -106,6 +106,12 @@ pub enum Error {
         /// What there is.
         have: u64,
     },
+    /// A scene or frame handle was used with another executor than the one that made it.
+    #[error("this {what} handle belongs to another device")]
+    ForeignHandle {
+        /// What the handle is of.
+        what: &'static str,
+    },
     /// No OpenCL library, platform or device could be used.
     #[error("no usable OpenCL device: {}", tried.join("; "))]
     NoOpenCl {

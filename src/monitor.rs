@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! How a caller watches long work and ends it: progress, previews, and a token that cancels.
 //!
-//! Loading a scene, making a renderer and drawing frames take a [`Monitor`]. What it hears are [`Event`]s; its
+//! Loading a scene, making a renderer and drawing frames take a [`Monitor`]. It reports [`Event`]s; its
 //! [`Cancel`] token, kept or shared with another thread, ends the work at any time with [`Error::Cancelled`].
 //!
 //! ```
@@ -48,7 +48,7 @@ impl Cancel {
     }
 }
 
-/// What a monitor hears.
+/// What a monitor reports.
 #[derive(Debug, Clone, Copy)]
 #[non_exhaustive]
 pub enum Event<'a> {
@@ -79,23 +79,23 @@ pub struct Preview<'a> {
     pub pixels: &'a [u32],
 }
 
-/// Watches work. Clones hear and end the same.
+/// Watches work. Clones report to and end the same.
 #[derive(Clone, Default)]
 pub struct Monitor {
     cancel: Cancel,
-    ear: Option<Arc<Ear>>,
+    listener: Option<Arc<Listener>>,
     part: Part,
 }
 
-/// Who hears, and what was told last.
-struct Ear {
-    hear: Box<dyn Fn(Event<'_>) + Send + Sync>,
-    told: Mutex<Told>,
+/// The callback, and what it was told last.
+struct Listener {
+    callback: Box<dyn Fn(Event<'_>) + Send + Sync>,
+    last: Mutex<LastProgress>,
     previews: bool,
 }
 
 #[derive(Default)]
-struct Told {
+struct LastProgress {
     phase: &'static str,
     share: f32,
 }
@@ -115,24 +115,24 @@ impl Default for Part {
     }
 }
 
-/// Steps of progress below this are not told.
+/// Steps of progress below this are not reported.
 const LEAST_STEP: f32 = 0.002;
 
 impl Monitor {
-    /// A monitor that passes on what it hears. `hear` may be called from any thread; calls do not overlap. It should
-    /// return soon, for the work waits. It hears no previews.
-    pub fn new(hear: impl Fn(Event<'_>) + Send + Sync + 'static) -> Self {
-        Monitor::hearing(Box::new(hear), false)
+    /// A monitor that reports to `callback`, which may be called from any thread; calls do not overlap. It should
+    /// return soon, for the work waits. It gets no previews.
+    pub fn new(callback: impl Fn(Event<'_>) + Send + Sync + 'static) -> Self {
+        Monitor::with_callback(Box::new(callback), false)
     }
 
     /// As [`Monitor::new`], with previews, which cost reading a frame's colours once more.
-    pub fn with_previews(hear: impl Fn(Event<'_>) + Send + Sync + 'static) -> Self {
-        Monitor::hearing(Box::new(hear), true)
+    pub fn with_previews(callback: impl Fn(Event<'_>) + Send + Sync + 'static) -> Self {
+        Monitor::with_callback(Box::new(callback), true)
     }
 
-    fn hearing(hear: Box<dyn Fn(Event<'_>) + Send + Sync>, previews: bool) -> Self {
-        let ear = Ear { hear, told: Mutex::default(), previews };
-        Monitor { ear: Some(Arc::new(ear)), ..Monitor::default() }
+    fn with_callback(callback: Box<dyn Fn(Event<'_>) + Send + Sync>, previews: bool) -> Self {
+        let listener = Listener { callback, last: Mutex::default(), previews };
+        Monitor { listener: Some(Arc::new(listener)), ..Monitor::default() }
     }
 
     /// The same monitor with this token.
@@ -155,7 +155,7 @@ impl Monitor {
 
     /// Whether previews are wanted.
     pub fn wants_previews(&self) -> bool {
-        self.ear.as_ref().is_some_and(|ear| ear.previews)
+        self.listener.as_ref().is_some_and(|listener| listener.previews)
     }
 
     /// A monitor for the part `from` to `to` of this one's work, which does `phase`. A part of a part keeps the phase.
@@ -166,24 +166,24 @@ impl Monitor {
         Monitor { part, ..self.clone() }
     }
 
-    /// Begins anew: what is told next may be less than what was told last. Does nothing to a part.
+    /// Begins anew: what is reported next may be less than what was reported last. Does nothing to a part.
     pub(crate) fn restart(&self) {
-        if let (Some(ear), "") = (&self.ear, self.part.phase) {
-            ear.restart();
+        if let (Some(listener), "") = (&self.listener, self.part.phase) {
+            listener.restart();
         }
     }
 
     /// Tells that `share` of this part is done.
     pub(crate) fn tell(&self, share: f32) {
-        if let Some(ear) = &self.ear {
-            ear.tell(self.part.phase, self.part.place(share));
+        if let Some(listener) = &self.listener {
+            listener.tell(self.part.phase, self.part.place(share));
         }
     }
 
     /// Shows a preview.
     pub(crate) fn show(&self, preview: Preview<'_>) {
-        if let Some(ear) = self.ear.as_ref().filter(|ear| ear.previews) {
-            ear.show(preview);
+        if let Some(listener) = self.listener.as_ref().filter(|listener| listener.previews) {
+            listener.show(preview);
         }
     }
 }
@@ -194,34 +194,34 @@ impl Part {
     }
 }
 
-impl Ear {
-    /// Calls `hear` unless another call is under way: progress can wait for the next step.
-    fn locked(&self, act: impl FnOnce(&mut Told)) {
-        match self.told.try_lock() {
-            Ok(mut told) => act(&mut told),
-            // After a panic of `hear` in another thread: what was told is as good as before.
+impl Listener {
+    /// Calls `callback` unless another call is under way: progress can wait for the next step.
+    fn locked(&self, act: impl FnOnce(&mut LastProgress)) {
+        match self.last.try_lock() {
+            Ok(mut last) => act(&mut last),
+            // After a panic of `callback` in another thread: what was reported is as good as before.
             Err(TryLockError::Poisoned(poisoned)) => act(&mut poisoned.into_inner()),
             Err(TryLockError::WouldBlock) => {}
         }
     }
 
     fn tell(&self, phase: &'static str, share: f32) {
-        self.locked(|told| {
-            let is_new = told.phase != phase;
-            let is_end = share >= 1.0 && told.share < 1.0;
-            if is_new || is_end || share >= told.share + LEAST_STEP {
-                *told = Told { phase, share: if is_new { share } else { share.max(told.share) } };
-                (self.hear)(Event::Progress { phase, share: told.share });
+        self.locked(|last| {
+            let is_new = last.phase != phase;
+            let is_end = share >= 1.0 && last.share < 1.0;
+            if is_new || is_end || share >= last.share + LEAST_STEP {
+                *last = LastProgress { phase, share: if is_new { share } else { share.max(last.share) } };
+                (self.callback)(Event::Progress { phase, share: last.share });
             }
         });
     }
 
     fn restart(&self) {
-        self.locked(|told| *told = Told::default());
+        self.locked(|last| *last = LastProgress::default());
     }
 
     fn show(&self, preview: Preview<'_>) {
-        self.locked(|_| (self.hear)(Event::Preview(preview)));
+        self.locked(|_| (self.callback)(Event::Preview(preview)));
     }
 }
 
@@ -229,7 +229,7 @@ impl std::fmt::Debug for Monitor {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Monitor")
             .field("cancel", &self.cancel)
-            .field("hears", &self.ear.is_some())
+            .field("reports", &self.listener.is_some())
             .field("previews", &self.wants_previews())
             .field("part", &self.part)
             .finish()

@@ -11,11 +11,13 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
+use rarefy::device::open::{DeviceChoice, DeviceOptions};
+use rarefy::method::counts::Keep;
 use rarefy::method::options::{Mode, RenderOptions};
 use rarefy::monitor::{Cancel, Event, Monitor};
-use rarefy::render::renderer::{DeviceChoice, Keep, Renderer, RendererOptions};
 use rarefy::scene::{self, builtin};
 use rarefy::{Error, Result};
+use rarefy_host_tests::frames::renderer_of;
 
 /// Random numbers, the same on every machine.
 struct Random(u32);
@@ -112,8 +114,8 @@ fn main() -> Result<()> {
         "most"
     );
     for (device_name, device) in [("twin", DeviceChoice::Cpu), ("opencl", DeviceChoice::OpenCl(None))] {
-        let options = RendererOptions { device, ..RendererOptions::default() };
-        let make = |monitor: &Monitor| Renderer::new(scene::load(&folder, monitor)?, &options, monitor);
+        let options = DeviceOptions { device, ..DeviceOptions::default() };
+        let make = |monitor: &Monitor| renderer_of(&scene::load(&folder, monitor)?, &options, monitor);
         measure(&format!("{device_name}: load and make ready"), moments, &mut |monitor| make(monitor).map(drop))?;
         let mut renderer = make(&Monitor::default())?;
         for (name, frame) in &frames {

@@ -13,10 +13,13 @@
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
+use std::sync::Arc;
 
+use rarefy::device::open::{DeviceChoice, DeviceOptions};
+use rarefy::method::counts::Keep;
 use rarefy::method::options::{Mode, RenderOptions};
-use rarefy::prepare::scene_buffers::Shading;
-use rarefy::render::renderer::{DeviceChoice, Keep, Renderer, RendererOptions};
+use rarefy::prepare::{PreparedScene, Shading};
+use rarefy::render::renderer::Renderer;
 
 const SCENES: [&str; 6] = ["modern-hall", "figures", "classroom", "living-room", "bathroom", "kitchen"];
 const SIZE: u32 = 1024;
@@ -114,13 +117,13 @@ struct Measured {
 }
 
 fn measure(anchor: &Path, scene: &Path, name: &str, rounds: usize) -> BenchResult<Measured> {
-    let options = RendererOptions {
+    let options = DeviceOptions {
         device: DeviceChoice::OpenCl(std::env::var("DEVICE_INDEX").ok().and_then(|index| index.parse().ok())),
-        shading: Shading::Anchor,
-        ..RendererOptions::default()
+        ..DeviceOptions::default()
     };
-    let mut renderer =
-        Renderer::new(rarefy::scene::load(scene, &rarefy::Monitor::default())?, &options, &rarefy::Monitor::default())?;
+    let monitor = rarefy::Monitor::default();
+    let prepared = PreparedScene::new(&rarefy::scene::load(scene, &monitor)?, Shading::Anchor, &monitor)?;
+    let mut renderer = Renderer::new(Arc::new(prepared), &options, &monitor)?;
     let frame = RenderOptions { width: SIZE, height: SIZE, mode: Mode::Full, ..RenderOptions::default() };
     let counted = renderer.render_exactly(&frame, Keep::COUNTERS)?;
     let rays = counted.stats.rays.ok_or("a counted frame without ray counts")?;

@@ -7,10 +7,12 @@
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use rarefy::analysis::metrics::{self, Rgb8};
+use rarefy::device::open::{DeviceChoice, DeviceOptions};
 use rarefy::layout::{PLANE_OBJECT, PLANE_SHADOW};
-use rarefy::method::frame::FrameStats;
+use rarefy::method::counts::Keep;
 use rarefy::method::options::*;
-use rarefy::render::renderer::{DeviceChoice, Keep, Renderer, RendererOptions};
+use rarefy::render::frame::FrameStats;
+use rarefy::render::renderer::Renderer;
 use rarefy_host_tests::command::root;
 
 const SCENES: [(&str, &str); 6] = [
@@ -204,8 +206,10 @@ fn load(folder: &str, name: &'static str, size: u32) -> Option<Scene> {
         return None;
     }
     let monitor = rarefy::Monitor::default();
-    let device = RendererOptions { device: DeviceChoice::Cpu, ..RendererOptions::default() };
-    let mut renderer = Renderer::new(rarefy::scene::load(&path, &monitor).unwrap(), &device, &monitor).unwrap();
+    let device = DeviceOptions { device: DeviceChoice::Cpu, ..DeviceOptions::default() };
+    let mut renderer =
+        rarefy_host_tests::frames::renderer_of(&rarefy::scene::load(&path, &monitor).unwrap(), &device, &monitor)
+            .unwrap();
     let frame = renderer.render_exactly(&options(size, Mode::Full, Method::default()), keep()).unwrap();
     let (objects, shadows) = (renderer.plane(PLANE_OBJECT).unwrap(), renderer.plane(PLANE_SHADOW).unwrap());
     Some(Scene { name, renderer, full: frame.pixels, stats: frame.stats, objects, shadows })

@@ -2,7 +2,7 @@
 //! Doors to OpenCL and small kernels to send through them.
 
 use rarefy::device::opencl::{
-    Arg, CacheFolder, Door, Kernel, Launch, OpenOptions, Profile, ProgramSource, build_log, open_with,
+    Arg, CacheFolder, DeviceLaunch, Door, Kernel, OpenOptions, Profile, ProgramSource, build_log, open_with,
 };
 
 use crate::frames::WITHOUT_OPENCL;
@@ -82,7 +82,7 @@ pub fn count(door: &Door, width: usize, height: usize, local: Option<[usize; 2]>
     door.fill_zero(&out).unwrap();
     let (w, h) = (width as u32, height as u32);
     let args = [Arg::Buffer(&out), Arg::Value(&w.to_ne_bytes()), Arg::Value(&h.to_ne_bytes())];
-    door.launch(&Launch {
+    door.launch(&DeviceLaunch {
         label: "count",
         kernel: &kernel,
         args: &args,
@@ -111,6 +111,6 @@ pub fn launch_sum(door: &Door, local: usize) -> rarefy::Result<u32> {
     let n = 1000u32.to_ne_bytes();
     let args = [Arg::Buffer(&input), Arg::Buffer(&out), Arg::Local(local * 4), Arg::Value(&n)];
     let local = Some([local, 1]);
-    door.launch(&Launch { label: "sum", kernel: &kernel, args: &args, global: [1000, 1], local, barrier: true })?;
+    door.launch(&DeviceLaunch { label: "sum", kernel: &kernel, args: &args, global: [1000, 1], local, barrier: true })?;
     Ok(door.read(&out, 0..1)?[0])
 }

@@ -3,6 +3,8 @@
 #![allow(clippy::unwrap_used)]
 
 use glam::{Vec2, Vec3};
+use rarefy::device::frame_memory::FrameInputs;
+use rarefy::device::open::{DeviceChoice, DeviceOptions};
 use rarefy::device::twin::SceneArgs;
 use rarefy::device::twin::executor::scene_args;
 use rarefy::device::twin::known_shadows::KnownShadows;
@@ -10,15 +12,16 @@ use rarefy::device::twin::ray_tree::{SurfacePoint, gather_secondary, shadow_test
 use rarefy::device::twin::scene_args::Work;
 use rarefy::device::twin::shade::{ShadePoint, shade_local};
 use rarefy::device::twin::traverse::closest_hit;
-use rarefy::layout::{FrameParams, NO_TRIANGLE};
+use rarefy::layout::{NO_TRIANGLE, Triangle};
 use rarefy::math::pack_normal;
-use rarefy::method::camera::frame_params;
+use rarefy::method::camera::frame_inputs;
+use rarefy::method::counts::Keep;
 use rarefy::method::options::{
     Checks, Compared, Correction, Method, Mode, RenderOptions, Spread, TextureRule, Tolerances,
 };
-use rarefy::prepare::kdtree::{BuildOptions, KdTree};
-use rarefy::prepare::scene_buffers::{SceneBuffers, Shading};
-use rarefy::render::renderer::{DeviceChoice, Keep, Renderer, RendererOptions};
+use rarefy::prepare::kdtree::KdNode;
+use rarefy::prepare::{PreparedScene, Shading};
+use rarefy::render::renderer::Renderer;
 use rarefy::scene::{Light, Material, Object, Scene, SceneParts, Surface, Texture};
 
 /// Shorthand for a vector.
@@ -173,10 +176,16 @@ impl SceneBuilder {
 
 /// A scene with its arrays, ready for single rays of the twin.
 pub struct Stand {
-    /// The scene's arrays.
-    pub buffers: SceneBuffers,
-    /// Parameters of a frame.
-    pub frame: FrameParams,
+    /// The tree's nodes, to be tampered with.
+    pub nodes: Vec<KdNode>,
+    /// The tree's leaf entries, likewise.
+    pub leaf_triangles: Vec<u32>,
+    /// The triangles, likewise.
+    pub triangles: Vec<Triangle>,
+    /// What else twin functions read of the scene.
+    pub prepared: PreparedScene,
+    /// What they read of a frame.
+    pub inputs: FrameInputs,
 }
 
 /// What a single ray finds, in linear colours.
@@ -199,18 +208,23 @@ pub struct Look {
 impl Stand {
     /// Makes `scene` ready, with a frame of `width` by `height` and chains of at most `depth` secondary rays.
     pub fn new(scene: &Scene, width: u32, height: u32, depth: u32) -> Self {
-        let tree =
-            KdTree::build(scene.positions(), scene.triangles(), &BuildOptions::default(), &rarefy::Monitor::default())
-                .unwrap();
-        tree.assert_well_formed(scene.positions(), scene.triangles());
-        let buffers = SceneBuffers::new(scene, tree, Shading::Full).unwrap();
-        let frame = frame_params(scene.view(), &buffers, width, height, 1, depth);
-        Stand { buffers, frame }
+        let prepared = PreparedScene::new(scene, Shading::Full, &rarefy::Monitor::default()).unwrap();
+        prepared.tree().assert_well_formed(scene.positions(), scene.triangles());
+        let inputs = frame_inputs(scene.view(), &prepared, width, height, 1, depth);
+        let args = scene_args(&prepared, &inputs);
+        let (nodes, leaf_triangles, triangles) =
+            (args.nodes.to_vec(), args.leaf_triangles.to_vec(), args.triangles.to_vec());
+        Stand { nodes, leaf_triangles, triangles, prepared, inputs }
     }
 
     /// The arguments of twin functions.
     pub fn args(&self) -> SceneArgs<'_> {
-        scene_args(&self.buffers, &self.frame)
+        SceneArgs {
+            nodes: &self.nodes,
+            leaf_triangles: &self.leaf_triangles,
+            triangles: &self.triangles,
+            ..scene_args(&self.prepared, &self.inputs)
+        }
     }
 
     /// Follows the ray from `o` along `d` as the twin follows a pixel's.
@@ -258,8 +272,8 @@ pub fn dashes(lines: &[(f32, f32)]) -> Scene {
 
 /// A renderer on the CPU twin.
 pub fn twin_renderer(scene: Scene) -> Renderer {
-    let options = RendererOptions { device: DeviceChoice::Cpu, ..RendererOptions::default() };
-    Renderer::new(scene, &options, &rarefy::Monitor::default()).unwrap()
+    let options = DeviceOptions { device: DeviceChoice::Cpu, ..DeviceOptions::default() };
+    crate::frames::renderer_of(&scene, &options, &rarefy::Monitor::default()).unwrap()
 }
 
 /// The given mode and size with the paper's tolerances at all levels and without correction.
@@ -302,7 +316,7 @@ pub fn plainly_converged(compared: Compared) -> Correction {
 }
 
 /// Draws a frame without the fall-back and keeps its attributes. Returns picture and statistics.
-pub fn draw(renderer: &mut Renderer, options: &RenderOptions) -> rarefy::method::frame::Frame {
+pub fn draw(renderer: &mut Renderer, options: &RenderOptions) -> rarefy::render::frame::Frame {
     renderer.render_exactly(options, Keep::EVERYTHING).unwrap()
 }
 

@@ -4,18 +4,24 @@
 use std::sync::Arc;
 
 use rarefy::Scene;
-use rarefy::device::backend::{Backend, BufferSizes, FrameBuffer};
-use rarefy::device::opencl::executor::OpenClBackend;
+use rarefy::device::executor::Executor;
+use rarefy::device::frame_memory::{FrameBuffer, FrameHandle};
+use rarefy::device::hooks::parity::{KernelParity, Parity};
+use rarefy::device::kernels::Mutation;
+use rarefy::device::launch::{Hook, Queue};
+use rarefy::device::open::DeviceOptions;
+use rarefy::device::opencl::executor::OpenClExecutor;
 use rarefy::device::opencl::{OpenOptions, Profile, open_with};
-use rarefy::device::twin::executor::TwinBackend;
+use rarefy::device::stage::{Kernel, Stage};
+use rarefy::device::twin::executor::TwinExecutor;
 use rarefy::layout::*;
-use rarefy::method::bands::{self, Plan, Room};
-use rarefy::method::camera::frame_params;
-use rarefy::method::frame::Keep;
+use rarefy::method::bands::{FrameBudget, Plan, read_frame_plane};
+use rarefy::method::camera::frame_inputs;
+use rarefy::method::counts::{Keep, PixelCounts};
+use rarefy::method::frame::draw_frame;
 use rarefy::method::options::{Mode, RenderOptions};
-use rarefy::method::pipeline::{self, PixelCounts};
-use rarefy::prepare::kdtree::{BuildOptions, KdTree};
-use rarefy::prepare::scene_buffers::{SceneBuffers, Shading};
+use rarefy::prepare::{PreparedScene, Shading};
+use rarefy::render::renderer::Renderer;
 use rarefy::scene::builtin;
 use rarefy::scene::{Object, SceneParts, Surface, Texture};
 
@@ -40,22 +46,28 @@ pub fn walking_by(traversal: Traversal) -> OpenOptions {
     OpenOptions { profile: Some(Profile::from_json(word, &text).unwrap()), ..OpenOptions::default() }
 }
 
-/// A scene with its buffers.
+/// Prepares `scene`, which is shaded by all its rules, and makes a renderer of it.
+///
+/// # Errors
+/// Whatever these report.
+pub fn renderer_of(scene: &Scene, options: &DeviceOptions, monitor: &rarefy::Monitor) -> rarefy::Result<Renderer> {
+    let prepared = PreparedScene::new(scene, Shading::Full, &monitor.part("prepare", 0.0, 0.5))?;
+    Renderer::new(Arc::new(prepared), options, &monitor.part("open", 0.5, 1.0))
+}
+
+/// A scene and what is prepared of it.
 pub struct Prepared {
     /// The scene.
     pub scene: Scene,
     /// What is uploaded of it.
-    pub buffers: Arc<SceneBuffers>,
+    pub prepared: Arc<PreparedScene>,
 }
 
 impl Prepared {
     /// `scene`, by the rules of `shading`.
     pub fn new(scene: Scene, shading: Shading) -> Self {
-        let tree =
-            KdTree::build(scene.positions(), scene.triangles(), &BuildOptions::default(), &rarefy::Monitor::default())
-                .unwrap();
-        let buffers = Arc::new(SceneBuffers::new(&scene, tree, shading).unwrap());
-        Prepared { scene, buffers }
+        let prepared = PreparedScene::new(&scene, shading, &rarefy::Monitor::default()).unwrap();
+        Prepared { scene, prepared: Arc::new(prepared) }
     }
 
     /// A built-in scene, [`zoo`], or [`crate::fixtures::dashes`] that fall and rise.
@@ -68,68 +80,97 @@ impl Prepared {
         Prepared::new(scene, Shading::Full)
     }
 
-    /// The CPU twin with this scene.
-    pub fn twin(&self) -> TwinBackend {
-        TwinBackend::new(Arc::clone(&self.buffers))
-    }
-
-    /// An OpenCL device with this scene.
-    ///
-    /// # Panics
-    /// If there is none.
-    pub fn device(&self, strict: bool, open: &OpenOptions) -> OpenClBackend {
-        let door = open_with(open).unwrap_or_else(|error| panic!("{error} (or set {WITHOUT_OPENCL}=none)"));
-        OpenClBackend::new(door, &self.buffers, strict).unwrap()
-    }
-
-    /// Draws a frame as a renderer does, but leaves the buffers to be read.
+    /// Draws a frame as a renderer does.
     ///
     /// # Errors
-    /// Whatever the back end reports.
-    pub fn draw(&self, backend: &mut dyn Backend, options: &RenderOptions, counters: bool) -> rarefy::Result<Drawn> {
-        options.validate()?;
-        let full = options.mode == Mode::Full;
-        let block = if full { 1 } else { options.method.block };
-        let (width, height) = (options.width, options.height);
-        let frame = frame_params(self.scene.view(), &self.buffers, width, height, block, options.depth);
-        if options.band_rows.is_some() {
-            return self.draw_in_bands(backend, &frame, options, counters);
-        }
-        let sizes = BufferSizes::new(&frame, true, counters, backend.scan_group()).unwrap();
-        backend.begin(&frame, &sizes)?;
-        let counts = if full {
-            pipeline::full_frame(backend, &frame, true)?
-        } else {
-            pipeline::adaptive_frame(backend, &frame, options, self.scene.view().extent)?
-        };
-        let pixels = backend.read(FrameBuffer::Color, 0..sizes.color)?;
-        let planes = backend.read(FrameBuffer::Attributes, 0..sizes.attributes)?;
-        let at = |x, y| PLANE_CLASS * frame.plane_pitch + plane_index(&frame, x, y);
-        let classes = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
-        let classes = classes.map(|(x, y)| planes[at(x, y) as usize]).collect();
-        Ok(Drawn { pixels, classes, counts })
+    /// Whatever the executor reports.
+    pub fn draw(&self, executor: &mut dyn Executor, options: &RenderOptions, counters: bool) -> rarefy::Result<Drawn> {
+        self.draw_observed(executor, options, counters, &mut []).map(|(drawn, _)| drawn)
     }
 
-    fn draw_in_bands(
+    /// Draws a frame as a renderer does, observed by `hooks`, and leaves its buffers to be read.
+    ///
+    /// # Errors
+    /// Whatever the executor or a hook reports.
+    pub fn draw_observed(
         &self,
-        backend: &mut dyn Backend,
-        frame: &FrameParams,
+        executor: &mut dyn Executor,
         options: &RenderOptions,
         counters: bool,
-    ) -> rarefy::Result<Drawn> {
-        let room = Room {
+        hooks: &mut [&mut dyn Hook],
+    ) -> rarefy::Result<(Drawn, FrameHandle)> {
+        options.validate()?;
+        let block = if options.mode == Mode::Full { 1 } else { options.method.block };
+        let view = self.scene.view();
+        let inputs = frame_inputs(view, &self.prepared, options.width, options.height, block, options.depth);
+        let budget = FrameBudget {
             total_bytes: u64::MAX,
             allocation_bytes: u64::MAX,
             scene_bytes: 0,
             attributes: true,
             counters,
-            scan_group: backend.scan_group(),
+            scan_group: executor.scan_group(),
         };
-        let plan = Plan::new(frame, &room, options.band_rows)?;
+        let plan = Plan::new(&inputs.params, &budget, options.band_rows)?;
         let keep = Keep::planes(&[PLANE_CLASS]).and(if counters { Keep::COUNTERS } else { Keep::default() });
-        let (counts, collected) = bands::draw(backend, &plan, options, self.scene.view().extent, keep)?;
-        Ok(Drawn { pixels: collected.colors, classes: collected.planes[&PLANE_CLASS].clone(), counts })
+        let uploaded = executor.upload(&self.prepared)?;
+        let mut frame = executor.allocate(&inputs, &plan.sizes)?;
+        let mut queue = Queue::new(executor, &uploaded, &mut frame, hooks);
+        let drawn = draw_frame(&mut queue, &inputs, &plan, options, view.extent, keep)?;
+        let classes = match drawn.collected.planes.get(&PLANE_CLASS) {
+            Some(classes) => classes.clone(),
+            None => read_frame_plane(executor, &frame, PLANE_CLASS)?,
+        };
+        Ok((Drawn { pixels: drawn.collected.colors, classes, counts: drawn.counts }, frame))
     }
+
+    /// Draws a frame on the twin, each launch once more on `device`, and compares: only those of a stage and kernel, if these are given.
+    ///
+    /// # Errors
+    /// Whatever the device reports.
+    pub fn parity(
+        &self,
+        device: &mut dyn Executor,
+        options: &RenderOptions,
+        counters: bool,
+        only: Option<(Stage, Kernel)>,
+    ) -> rarefy::Result<Vec<KernelParity>> {
+        let mut twin = TwinExecutor::imitating(device);
+        let parity = Parity::new(device, &self.prepared)?;
+        let mut parity = match only {
+            Some((stage, kernel)) => parity.only(stage, kernel),
+            None => parity,
+        };
+        self.draw_observed(&mut twin, options, counters, &mut [&mut parity])?;
+        Ok(parity.results)
+    }
+}
+
+/// The CPU twin.
+pub fn twin() -> TwinExecutor {
+    TwinExecutor::default()
+}
+
+/// An OpenCL device.
+///
+/// # Panics
+/// If there is none.
+pub fn device(strict: bool, open: &OpenOptions) -> OpenClExecutor {
+    mutated_device(strict, open, None)
+}
+
+/// An OpenCL device with kernels broken on purpose.
+///
+/// # Panics
+/// If there is none.
+pub fn mutated_device(strict: bool, open: &OpenOptions, mutation: Option<Mutation>) -> OpenClExecutor {
+    let door = open_with(open).unwrap_or_else(|error| panic!("{error} (or set {WITHOUT_OPENCL}=none)"));
+    OpenClExecutor::new(door, strict, mutation)
+}
+
+/// All words of one of a frame's buffers.
+pub fn words(executor: &mut dyn Executor, frame: &FrameHandle, buffer: FrameBuffer) -> Vec<u32> {
+    executor.read(frame, buffer, 0..frame.sizes().of(buffer)).unwrap()
 }
 
 /// A frame, to be compared.

@@ -4,20 +4,22 @@
 
 use glam::{DVec3, Vec3};
 use rarefy::Error;
+use rarefy::device::open::{DeviceChoice, DeviceOptions};
 use rarefy::layout::*;
-use rarefy::method::frame::Frame;
+use rarefy::method::counts::Keep;
 use rarefy::method::options::{Compared, Correction, Mode, RenderOptions};
-use rarefy::render::renderer::{DeviceChoice, Keep, Renderer, RendererOptions};
+use rarefy::render::frame::Frame;
+use rarefy::render::renderer::Renderer;
 use rarefy::scene::Scene;
 use rarefy::scene::builtin;
 use rarefy_host_tests::fixtures::*;
-use rarefy_host_tests::frames::no_opencl;
+use rarefy_host_tests::frames::{no_opencl, renderer_of};
 use rarefy_host_tests::masks::*;
 
 fn renderer(scene: Scene, device: DeviceChoice) -> Renderer {
-    Renderer::new(
-        scene,
-        &RendererOptions { device, strict: true, ..RendererOptions::default() },
+    renderer_of(
+        &scene,
+        &DeviceOptions { device, strict: true, ..DeviceOptions::default() },
         &rarefy::Monitor::default(),
     )
     .unwrap()
@@ -137,8 +139,8 @@ fn a_budget_cuts_the_frame_and_is_kept() {
     let scene = || builtin::to_scene("spheres").unwrap();
     let draw_within = |bytes: Option<u64>| {
         let renderer_options =
-            RendererOptions { device: DeviceChoice::Cpu, memory_budget_bytes: bytes, ..RendererOptions::default() };
-        let mut renderer = Renderer::new(scene(), &renderer_options, &rarefy::Monitor::default()).unwrap();
+            DeviceOptions { device: DeviceChoice::Cpu, memory_budget_bytes: bytes, ..DeviceOptions::default() };
+        let mut renderer = renderer_of(&scene(), &renderer_options, &rarefy::Monitor::default()).unwrap();
         let frame = renderer.render_exactly(&options, Keep::default());
         (frame.map(|frame| frame.pixels), renderer.peak_device_bytes())
     };

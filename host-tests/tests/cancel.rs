@@ -8,16 +8,18 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
+use rarefy::device::open::{DeviceChoice, DeviceOptions};
 use rarefy::layout::*;
-use rarefy::method::frame::Frame;
+use rarefy::method::counts::Keep;
 use rarefy::method::options::{Mode, RenderOptions};
 use rarefy::monitor::{Cancel, Event, Monitor};
-use rarefy::render::renderer::{DeviceChoice, Keep, Renderer, RendererOptions};
+use rarefy::render::frame::Frame;
+use rarefy::render::renderer::Renderer;
 use rarefy::scene::{self, builtin};
 use rarefy::{Error, Scene};
 use rarefy_host_tests::command::root;
 use rarefy_host_tests::fixtures::{blocks, sweeps};
-use rarefy_host_tests::frames::no_opencl;
+use rarefy_host_tests::frames::{no_opencl, renderer_of};
 
 fn devices() -> Vec<DeviceChoice> {
     let mut devices = vec![DeviceChoice::Cpu];
@@ -28,8 +30,8 @@ fn devices() -> Vec<DeviceChoice> {
 }
 
 fn renderer(scene: Scene, device: DeviceChoice) -> Renderer {
-    let options = RendererOptions { device, strict: true, ..RendererOptions::default() };
-    Renderer::new(scene, &options, &Monitor::default()).unwrap()
+    let options = DeviceOptions { device, strict: true, ..DeviceOptions::default() };
+    renderer_of(&scene, &options, &Monitor::default()).unwrap()
 }
 
 fn small(width: u32, height: u32) -> RenderOptions {
@@ -81,8 +83,8 @@ fn a_scene_from_files_can_be_cancelled_while_it_is_loaded() {
 #[test]
 fn a_renderer_can_be_cancelled_while_it_is_made() {
     for device in devices() {
-        let options = RendererOptions { device, ..RendererOptions::default() };
-        let make = |monitor: &Monitor| Renderer::new(builtin::to_scene("rods").unwrap(), &options, monitor).map(|_| ());
+        let options = DeviceOptions { device, ..DeviceOptions::default() };
+        let make = |monitor: &Monitor| renderer_of(&builtin::to_scene("rods").unwrap(), &options, monitor).map(|_| ());
         assert!(cancel_at_every_report(make, 1) >= 2, "{device:?}");
     }
 }
@@ -215,7 +217,7 @@ fn a_preview_is_the_base_pixels_of_the_picture() {
     }
 }
 
-/// Two hundred moments all over loading, building and drawing, on both back ends. How long each takes is measured by
+/// Two hundred moments all over loading, building and drawing, on the twin and on OpenCL. How long each takes is measured by
 /// `cargo bench -p rarefy-host-tests --bench cancel`.
 #[test]
 #[ignore = "long: cancels 200 times at random moments"]
@@ -257,9 +259,9 @@ fn two_hundred_random_moments() {
                     cancel.cancel();
                 });
                 if round % 4 == 0 {
-                    let options = RendererOptions { device, ..RendererOptions::default() };
+                    let options = DeviceOptions { device, ..DeviceOptions::default() };
                     let made = scene::load(Path::new(&folder), &monitor)
-                        .and_then(|scene| Renderer::new(scene, &options, &monitor));
+                        .and_then(|scene| renderer_of(&scene, &options, &monitor));
                     made.map(|_| None)
                 } else {
                     renderer.set_monitor(&monitor);

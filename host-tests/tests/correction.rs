@@ -4,7 +4,8 @@
 //! that takes what rays find from the full picture.
 #![allow(clippy::unwrap_used)]
 
-use rarefy::device::backend::{Backend, FrameBuffer};
+use rarefy::device::frame_memory::FrameBuffer;
+use rarefy::device::launch::Queue;
 use rarefy::device::stage::{Kernel, Stage};
 use rarefy::layout::*;
 use rarefy::method::options::{Compared, Correction, Mode, RenderOptions, Spread};
@@ -468,20 +469,15 @@ fn sweep_once(before: &Planes, full: &Planes, shadows: bool) -> Planes {
     now
 }
 
-/// One launch of post-correction at a time, as the pipeline does it, from `sources` in any order.
-fn rounds_by_hand(backend: &mut dyn Backend, mut sources: Vec<u32>, flags: u32) -> u32 {
+/// One launch of post-correction at a time, as the method does it, from `sources` in any order.
+fn rounds_by_hand(queue: &mut Queue, mut sources: Vec<u32>, flags: u32) -> u32 {
     let mut fired = 0;
     while !sources.is_empty() {
         let count = sources.len() as u32;
-        backend.write(FrameBuffer::List, &sources).unwrap();
-        let step = StepParams {
-            flags,
-            item_count: 4 * count,
-            list_offset: count,
-            scan_group: backend.scan_group(),
-            ..NO_STEP
-        };
-        let mut run = |kernel, step: &StepParams| backend.run(Stage::Step4, kernel, step).unwrap();
+        queue.write(FrameBuffer::List, &sources).unwrap();
+        let step =
+            StepParams { flags, item_count: 4 * count, list_offset: count, scan_group: queue.scan_group(), ..NO_STEP };
+        let mut run = |kernel, step: &StepParams| queue.launch(Stage::Step4, kernel, step).unwrap();
         run(Kernel::CorrectMark, &step);
         run(Kernel::CorrectCount, &step);
         let (mut level, mut sums_offset) = (step.item_count.div_ceil(32), 0);
@@ -493,14 +489,14 @@ fn rounds_by_hand(backend: &mut dyn Backend, mut sources: Vec<u32>, flags: u32) 
                 break;
             }
         }
-        let found = backend.read_sum(sums_offset).unwrap();
+        let found = queue.read_sum(sums_offset).unwrap();
         if found > 0 {
-            let mut run = |kernel, step: &StepParams| backend.run(Stage::Step4, kernel, step).unwrap();
+            let mut run = |kernel, step: &StepParams| queue.launch(Stage::Step4, kernel, step).unwrap();
             run(Kernel::CorrectScatter, &StepParams { list_end: count + found, ..step });
             run(Kernel::Trace, &StepParams { item_count: found, ..step });
         }
         fired += found;
-        sources = backend.read(FrameBuffer::List, count as usize..(count + found) as usize).unwrap();
+        sources = queue.read(FrameBuffer::List, count as usize..(count + found) as usize).unwrap();
     }
     fired
 }
@@ -555,8 +551,12 @@ fn the_kernels_give_the_same_for_sources_in_any_order() {
                 if !complete {
                     sources.truncate(sources.len() / 2);
                 }
-                let fired = rounds_by_hand(renderer.backend(), sources, STEP_STORE | STEP_COMPARE_SHADOW);
-                let color = renderer.backend().read(FrameBuffer::Color, 0..before.class.len()).unwrap();
+                let fired = renderer
+                    .on_last_frame(|_, queue| rounds_by_hand(queue, sources, STEP_STORE | STEP_COMPARE_SHADOW))
+                    .unwrap();
+                let color = renderer
+                    .on_last_frame(|_, queue| queue.read(FrameBuffer::Color, 0..before.class.len()).unwrap())
+                    .unwrap();
                 let found = planes_of(&mut renderer, &options, color);
                 assert_eq!(fired as usize, found.fired().len(), "each pixel is fired once");
                 assert_eq!(found == expected, complete, "{} in order {order}", renderer.name());

@@ -7,11 +7,13 @@
 use std::path::{Path, PathBuf};
 
 use rarefy::analysis::layers::{self, Layer};
+use rarefy::device::open::{DeviceChoice, DeviceOptions};
+use rarefy::method::counts::Keep;
 use rarefy::method::options::{Mode, RenderOptions};
 use rarefy::render::picture::{read_rgb8, write_png};
-use rarefy::render::renderer::{DeviceChoice, Keep, Renderer, RendererOptions};
 use rarefy::scene::builtin;
 use rarefy_host_tests::command::root;
+use rarefy_host_tests::frames::renderer_of;
 
 const WIDTH: u32 = 128;
 const HEIGHT: u32 = 96;
@@ -39,9 +41,9 @@ fn layers_are_what_they_were() {
     let failed_folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("golden");
     let mut failures = Vec::new();
     for name in SCENES {
-        let options = RendererOptions { device: DeviceChoice::Cpu, ..RendererOptions::default() };
+        let options = DeviceOptions { device: DeviceChoice::Cpu, ..DeviceOptions::default() };
         let mut renderer =
-            Renderer::new(builtin::to_scene(name).unwrap(), &options, &rarefy::Monitor::default()).unwrap();
+            renderer_of(&builtin::to_scene(name).unwrap(), &options, &rarefy::Monitor::default()).unwrap();
         let options = RenderOptions { width: WIDTH, height: HEIGHT, mode: Mode::Adaptive, ..RenderOptions::default() };
         let frame = renderer.render_exactly(&options, Keep::EVERYTHING).unwrap();
         for layer in LAYERS {

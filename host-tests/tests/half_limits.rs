@@ -4,14 +4,15 @@
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use rarefy::Error;
-use rarefy::device::backend::Backend;
-use rarefy::device::opencl::executor::{OpenClBackend, scan_group, work_group};
-use rarefy::device::opencl::{CacheFolder, OpenOptions, Profile, open_with};
+use rarefy::device::executor::Executor;
+use rarefy::device::open::{DeviceChoice, DeviceOptions};
+use rarefy::device::opencl::executor::{scan_group, work_group};
+use rarefy::device::opencl::{CacheFolder, OpenOptions, Profile};
 use rarefy::device::stage::LAUNCHES;
+use rarefy::method::counts::Keep;
 use rarefy::method::options::RenderOptions;
-use rarefy::render::renderer::{DeviceChoice, Keep, Renderer, RendererOptions};
 use rarefy::scene::builtin;
-use rarefy_host_tests::frames::{Prepared, no_opencl};
+use rarefy_host_tests::frames::{Prepared, device, no_opencl, renderer_of};
 
 const SCENE: &str = "spheres";
 
@@ -39,8 +40,8 @@ fn profile(section: &str, key: &str, value: &str) -> Profile {
 fn render(profile: Option<Profile>, memory_budget_bytes: Option<u64>) -> rarefy::Result<Vec<u32>> {
     let device = DeviceChoice::OpenCl(None);
     let cache = CacheFolder::Off;
-    let options = RendererOptions { device, profile, cache, memory_budget_bytes, ..RendererOptions::default() };
-    let mut renderer = Renderer::new(builtin::to_scene(SCENE).unwrap(), &options, &rarefy::Monitor::default())?;
+    let options = DeviceOptions { device, profile, cache, memory_budget_bytes, ..DeviceOptions::default() };
+    let mut renderer = renderer_of(&builtin::to_scene(SCENE).unwrap(), &options, &rarefy::Monitor::default())?;
     Ok(renderer.render(&frame(), Keep::default())?.pixels)
 }
 
@@ -54,8 +55,7 @@ fn used(prepared: &Prepared, key: &str) -> u64 {
             cache: CacheFolder::Off,
             ..OpenOptions::default()
         };
-        let device = OpenClBackend::new(open_with(&open).unwrap(), &prepared.buffers, false);
-        match device.and_then(|mut device| prepared.draw(&mut device, &frame(), false)) {
+        match prepared.draw(&mut device(false, &open), &frame(), false) {
             Ok(_) => return allowed,
             Err(Error::LimitExceeded { limit, wanted, .. }) => {
                 assert!(limit.starts_with(&key.to_uppercase()), "{key}: {limit}");
@@ -102,7 +102,7 @@ fn half_of_each_limit_adapts_or_refuses() {
     let expected = render(None, None).unwrap();
     let prepared = Prepared::named(SCENE);
     let open = OpenOptions { cache: CacheFolder::Off, ..OpenOptions::default() };
-    let mut device = prepared.device(false, &open);
+    let mut device = device(false, &open);
     prepared.draw(&mut device, &frame(), false).unwrap();
     let (limits, choices) = (device.door().limits().clone(), device.door().choices().clone());
     let scan = u64::from(scan_group(&limits));

@@ -5,8 +5,9 @@
 
 use glam::{Vec2, Vec3};
 use rarefy::layout::*;
-use rarefy::method::frame::{Frame, Keep};
+use rarefy::method::counts::Keep;
 use rarefy::method::options::{Mode, RenderOptions};
+use rarefy::render::frame::Frame;
 use rarefy::render::renderer::Renderer;
 use rarefy::scene::Scene;
 use rarefy_host_tests::fixtures::*;

@@ -8,16 +8,16 @@
 use std::collections::{BTreeSet, HashMap};
 use std::path::Path;
 
-use rarefy::device::hooks::parity::{KernelParity, ParityBackend};
+use rarefy::device::hooks::parity::KernelParity;
 use rarefy::device::kernels::{FILES, Mutation};
+use rarefy::device::open::DeviceOptions;
 use rarefy::device::opencl::{CacheFolder, OpenOptions};
 use rarefy::device::stage::{Kernel, LAUNCHES, Stage};
 use rarefy::layout::Traversal;
 use rarefy::method::options::{Method, RenderOptions};
-use rarefy::render::renderer::RendererOptions;
 use rarefy::selftest::full;
 use rarefy_host_tests::fixtures::sweeps;
-use rarefy_host_tests::frames::{Prepared, no_opencl, walking_by};
+use rarefy_host_tests::frames::{Prepared, mutated_device, no_opencl, walking_by};
 
 /// The frame that a mutant is drawn in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -359,12 +359,9 @@ fn open(shot: Shot) -> OpenOptions {
     OpenOptions { cache: CacheFolder::At(folder), ..walking_by(shot.traversal()) }
 }
 
-fn parity(prepared: &Prepared, shot: Shot, (stage, kernel): Launch, mutation: Option<Mutation>) -> Vec<KernelParity> {
-    let mut device = prepared.device(true, &open(shot));
-    device.mutate(mutation);
-    let mut parity = ParityBackend::new(prepared.twin(), &mut device).only(stage, kernel);
-    prepared.draw(&mut parity, &shot.options(), shot.counters()).unwrap();
-    parity.results
+fn parity(prepared: &Prepared, shot: Shot, launch: Launch, mutation: Option<Mutation>) -> Vec<KernelParity> {
+    let mut device = mutated_device(true, &open(shot), mutation);
+    prepared.parity(&mut device, &shot.options(), shot.counters(), Some(launch)).unwrap()
 }
 
 /// Each table is a test of its own, so that they run side by side.
@@ -442,7 +439,7 @@ fn the_self_test_names_every_stage_that_is_broken() {
     }
     for stage in Stage::ALL {
         let mutation = Some(full::breaking_mutation(stage));
-        let result = full::run(&RendererOptions { mutation, ..RendererOptions::default() }).unwrap();
+        let result = full::run(&DeviceOptions { mutation, ..DeviceOptions::default() }).unwrap();
         let wrong: Vec<&str> = result.checks.iter().filter(|c| !c.passed).map(|c| c.name.as_str()).collect();
         assert!(!wrong.is_empty(), "{}: passes", stage.name());
         assert!(wrong.iter().all(|name| name.starts_with(stage.name())), "{}: {wrong:?}", stage.name());

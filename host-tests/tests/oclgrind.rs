@@ -6,15 +6,17 @@
 
 use std::path::{Path, PathBuf};
 
-use rarefy::device::backend::Backend;
+use rarefy::device::executor::Executor;
 use rarefy::device::kernels::Mutation;
+use rarefy::device::open::{DeviceChoice, DeviceOptions};
 use rarefy::device::opencl::CacheFolder;
 use rarefy::layout::Traversal;
+use rarefy::method::counts::Keep;
 use rarefy::method::options::{Mode, RenderOptions};
-use rarefy::render::renderer::{DeviceChoice, Keep, Renderer, RendererOptions};
+use rarefy::render::renderer::Renderer;
 use rarefy::scene::builtin;
 use rarefy_host_tests::fixtures::{blocks, sweeps};
-use rarefy_host_tests::frames::{Drawn, Prepared, walking_by};
+use rarefy_host_tests::frames::{Drawn, Prepared, mutated_device, renderer_of, twin, walking_by};
 
 /// Where Oclgrind writes what it finds; `None` outside of its script.
 fn log() -> Option<PathBuf> {
@@ -32,8 +34,8 @@ fn findings(log: &Path) -> String {
 fn renderer(device: DeviceChoice, mutation: Option<Mutation>) -> Renderer {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("oclgrind");
     let cache = CacheFolder::At(folder);
-    let options = RendererOptions { device, strict: true, mutation, cache, ..RendererOptions::default() };
-    Renderer::new(builtin::to_scene("rods").unwrap(), &options, &rarefy::Monitor::default()).unwrap()
+    let options = DeviceOptions { device, strict: true, mutation, cache, ..DeviceOptions::default() };
+    renderer_of(&builtin::to_scene("rods").unwrap(), &options, &rarefy::Monitor::default()).unwrap()
 }
 
 #[test]
@@ -67,9 +69,8 @@ fn no_kernel_races_or_leaves_its_buffers() {
 /// takes it for the next one of that number.
 fn draw_afresh(options: &RenderOptions, counters: bool, traversal: Traversal, mutation: Option<Mutation>) -> Drawn {
     let prepared = Prepared::named("rods");
-    let mut device = prepared.device(true, &walking_by(traversal));
+    let mut device = mutated_device(true, &walking_by(traversal), mutation);
     assert!(device.info().name.contains("Oclgrind"), "{:?}", device.info());
-    device.mutate(mutation);
     prepared.draw(&mut device, options, counters).unwrap()
 }
 
@@ -90,7 +91,7 @@ fn no_kernel_reads_what_nobody_wrote() {
     for (options, counters, traversal) in &frames {
         let drawn = draw_afresh(options, *counters, *traversal, None);
         let prepared = Prepared::named("rods");
-        assert!(drawn == prepared.draw(&mut prepared.twin(), options, *counters).unwrap(), "{options:?}");
+        assert!(drawn == prepared.draw(&mut twin(), options, *counters).unwrap(), "{options:?}");
         assert_eq!(findings(&log), "", "{options:?}, {}", traversal.name());
     }
     println!("Oclgrind: {} frames, nothing read that nobody wrote", frames.len());
@@ -122,15 +123,15 @@ fn a_racing_kernel_is_found() {
         to: "out_sums[0] = popcount(mask);".into(),
     };
     let folder = CacheFolder::At(Path::new(env!("CARGO_TARGET_TMPDIR")).join("oclgrind"));
-    let options = RendererOptions {
+    let options = DeviceOptions {
         device: DeviceChoice::OpenCl(None),
         mutation: Some(mutation),
         cache: folder,
-        ..RendererOptions::default()
+        ..DeviceOptions::default()
     };
     let options_frame = RenderOptions { width: 64, height: 48, ..RenderOptions::default() };
     // The quick self-test may refuse the device before; by then the race has happened.
-    if let Ok(mut renderer) = Renderer::new(builtin::to_scene("rods").unwrap(), &options, &rarefy::Monitor::default()) {
+    if let Ok(mut renderer) = renderer_of(&builtin::to_scene("rods").unwrap(), &options, &rarefy::Monitor::default()) {
         let _ = renderer.render_exactly(&options_frame, Keep::default());
     }
     let found = findings(&log);

@@ -5,7 +5,7 @@
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use rarefy::Error;
-use rarefy::device::opencl::{Arg, Faults, Launch, OpenOptions, Profile, ProgramSource, build_log, open_with};
+use rarefy::device::opencl::{Arg, DeviceLaunch, Faults, OpenOptions, Profile, ProgramSource, build_log, open_with};
 use rarefy::monitor::{Cancel, Event, Monitor};
 use rarefy_host_tests::doors::{SOURCE, count, counted, door, door_with, kernel, launch_sum, options};
 use rarefy_host_tests::frames::no_opencl;
@@ -28,8 +28,14 @@ fn a_launch_of_any_size_runs_each_item_once() {
     let zero = 0u32.to_ne_bytes();
     let before = door.enqueues();
     let args = [Arg::Buffer(&out), Arg::Value(&zero), Arg::Value(&zero)];
-    let launch =
-        Launch { label: "count", kernel: &kernel, args: &args, global: [0, 5], local: Some([8, 8]), barrier: false };
+    let launch = DeviceLaunch {
+        label: "count",
+        kernel: &kernel,
+        args: &args,
+        global: [0, 5],
+        local: Some([8, 8]),
+        barrier: false,
+    };
     door.launch(&launch).unwrap();
     assert_eq!(door.enqueues(), before, "an empty launch enqueues nothing");
 }
@@ -77,8 +83,14 @@ fn structs_are_passed_by_value() {
         params.extend_from_slice(&word.to_ne_bytes());
     }
     let args = [Arg::Buffer(&out), Arg::Value(&params)];
-    let launch =
-        Launch { label: "scale", kernel: &kernel, args: &args, global: [35, 1], local: Some([8, 1]), barrier: false };
+    let launch = DeviceLaunch {
+        label: "scale",
+        kernel: &kernel,
+        args: &args,
+        global: [35, 1],
+        local: Some([8, 1]),
+        barrier: false,
+    };
     door.launch(&launch).unwrap();
     let expected: Vec<f32> = (0..35).map(|i| i as f32 * 0.5 + 3.0).collect();
     assert_eq!(door.read(&out, 0..35).unwrap(), expected);
@@ -148,11 +160,12 @@ fn ranges_beyond_a_buffer_and_foreign_objects_are_errors() {
     let kernel = kernel(&other, "count");
     let one = 1u32.to_ne_bytes();
     let args = [Arg::Buffer(&buffer), Arg::Value(&one), Arg::Value(&one)];
-    let launch = Launch { label: "count", kernel: &kernel, args: &args, global: [1, 1], local: None, barrier: false };
+    let launch =
+        DeviceLaunch { label: "count", kernel: &kernel, args: &args, global: [1, 1], local: None, barrier: false };
     let message = other.launch(&launch).unwrap_err().to_string();
     assert!(message.contains("clSetKernelArg 0 of `count`"), "{message}");
     assert!(ours.launch(&launch).unwrap_err().to_string().contains("CL_INVALID_CONTEXT"));
-    let message = other.launch(&Launch { args: &args[1..], ..launch }).unwrap_err().to_string();
+    let message = other.launch(&DeviceLaunch { args: &args[1..], ..launch }).unwrap_err().to_string();
     assert!(message.contains("2 of 3 arguments") && message.contains("CL_INVALID_KERNEL_ARGS"), "{message}");
     let program = other.program(&ProgramSource { name: "p", source: SOURCE, options: "" }).unwrap();
     let message = program.kernel("missing").unwrap_err().to_string();
@@ -230,8 +243,14 @@ fn a_launch_is_cancelled_between_two_slices() {
     door.watch(&monitor.with_cancel(&cancel));
     let side = 64u32.to_ne_bytes();
     let args = [Arg::Buffer(&out), Arg::Value(&side), Arg::Value(&side)];
-    let launch =
-        Launch { label: "count", kernel: &kernel, args: &args, global: [64, 64], local: Some([8, 8]), barrier: false };
+    let launch = DeviceLaunch {
+        label: "count",
+        kernel: &kernel,
+        args: &args,
+        global: [64, 64],
+        local: Some([8, 8]),
+        barrier: false,
+    };
     assert!(matches!(door.launch(&launch), Err(Error::Cancelled)));
     assert!((16..=18).contains(&door.enqueues()), "{} of 64 slices", door.enqueues());
     for result in [door.read(&out, 0..1).map(|_| ()), door.write(&out, 0, &[1])] {
@@ -275,7 +294,7 @@ fn a_device_that_is_not_there_is_an_error_with_those_that_are() {
         return;
     }
     let error = open_with(&OpenOptions { index: Some(99), ..options() }).unwrap_err().to_string();
-    assert!(error.contains("no OpenCL device 99") && error.contains("0 ("), "{error}");
+    assert!(error.contains("`opencl:99`") && error.contains("opencl:0 ("), "{error}");
 }
 
 #[test]

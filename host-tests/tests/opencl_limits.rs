@@ -4,14 +4,14 @@
 //! Oclgrind runs these with `--test-threads 1` only: it mixes up contexts of several threads.
 #![allow(clippy::unwrap_used, missing_docs)]
 
-use rarefy::device::opencl::{Arg, CacheFolder, Launch, OpenOptions, Profile, ProgramSource, discover};
-use rarefy::render::renderer::{DeviceChoice, Renderer, RendererOptions};
+use rarefy::device::open::{DeviceChoice, DeviceOptions};
+use rarefy::device::opencl::{Arg, CacheFolder, DeviceLaunch, OpenOptions, Profile, ProgramSource, discover};
 use rarefy::scene::builtin;
 use rarefy::{Error, Monitor};
 use rarefy_host_tests::doors::{
     SOURCE, count, counted, door, door_under, door_with, kernel, launch_sum, options, profile,
 };
-use rarefy_host_tests::frames::no_opencl;
+use rarefy_host_tests::frames::{no_opencl, renderer_of};
 
 /// Each limit of a launch or an object, tripped by a profile that has only this one.
 #[test]
@@ -80,7 +80,14 @@ fn every_limit_refuses_with_its_numbers() {
         let (a, out) = (door.buffer_from("a", &vec![21u32; len]).unwrap(), door.buffer::<u32>("out", 1).unwrap());
         let args = [Arg::Buffer(&a), Arg::Buffer(&a), Arg::Buffer(&out)];
         let global = [1, 1];
-        door.launch(&Launch { label: "pick", kernel: &kernel, args: &args, global, local: None, barrier: false })?;
+        door.launch(&DeviceLaunch {
+            label: "pick",
+            kernel: &kernel,
+            args: &args,
+            global,
+            local: None,
+            barrier: false,
+        })?;
         assert_eq!(door.read(&out, 0..1).unwrap(), [42]);
         Ok(())
     };
@@ -109,7 +116,7 @@ fn every_limit_refuses_with_its_numbers() {
         let one = 1u32.to_ne_bytes();
         let args = [Arg::Buffer(&out), Arg::Value(&one), Arg::Value(&one)];
         let global = [1usize << (usize::BITS / 2), 1];
-        let launch = Launch { label: "big", kernel: &kernel, args: &args, global, local: None, barrier: false };
+        let launch = DeviceLaunch { label: "big", kernel: &kernel, args: &args, global, local: None, barrier: false };
         let limit = format!("CL_DEVICE_ADDRESS_BITS{of}");
         says(door.launch(&launch), &limit, "4294967296 work-items", "4294967295 work-items");
     }
@@ -132,7 +139,7 @@ fn limits_hold_for_cached_programs() {
         let a = door.buffer_from("a", &[1u32]).unwrap();
         let args = [Arg::Buffer(&a), Arg::Buffer(&a), Arg::Buffer(&a)];
         let global = [1, 1];
-        let launch = Launch { label: "pick", kernel: &kernel, args: &args, global, local: None, barrier: false };
+        let launch = DeviceLaunch { label: "pick", kernel: &kernel, args: &args, global, local: None, barrier: false };
         let message = door.launch(&launch).unwrap_err().to_string();
         assert!(message.contains("CL_DEVICE_MAX_CONSTANT_ARGS"), "{message}");
     }
@@ -150,18 +157,18 @@ fn an_enqueue_beyond_the_watchdog_is_an_error() {
     let door = door_with(&OpenOptions { profile: Some(strict), slice_items: Some(u64::MAX), ..options() });
     let source = "kernel void slow(global uint *out) {
         uint v = (uint)get_global_id(0);
-        for (uint i = 0; i < 2000u; i++) v = v * 1664525u + (v >> 7) + 1013904223u;
+        for (uint i = 0; i < 16000u; i++) v = v * 1664525u + (v >> 7) + 1013904223u;
         out[get_global_id(0)] = v;
     }";
     let program = door.program(&ProgramSource { name: "slow", source, options: "" }).unwrap();
     let kernel = program.kernel("slow").unwrap();
-    let out = door.buffer::<u32>("out", 1 << 18).unwrap();
+    let out = door.buffer::<u32>("out", 1 << 15).unwrap();
     let args = [Arg::Buffer(&out)];
-    let launch = Launch {
+    let launch = DeviceLaunch {
         label: "slow",
         kernel: &kernel,
         args: &args,
-        global: [1 << 18, 1],
+        global: [1 << 15, 1],
         local: Some([64, 1]),
         barrier: false,
     };
@@ -237,12 +244,12 @@ fn a_scene_beyond_one_allocation_is_refused_with_the_numbers() {
         return;
     }
     let make = |most_bytes: &str| {
-        let options = RendererOptions {
+        let options = DeviceOptions {
             device: DeviceChoice::OpenCl(None),
             profile: Some(profile(&[("cl_device_max_mem_alloc_size", most_bytes)])),
-            ..RendererOptions::default()
+            ..DeviceOptions::default()
         };
-        Renderer::new(builtin::to_scene("cafe").unwrap(), &options, &Monitor::default())
+        renderer_of(&builtin::to_scene("cafe").unwrap(), &options, &Monitor::default())
     };
     let error = make("1000000").err().unwrap();
     assert!(matches!(error, Error::LimitExceeded { .. }), "{error}");

@@ -5,7 +5,7 @@
 use rarefy::device::opencl::OpenOptions;
 use rarefy::method::options::RenderOptions;
 use rarefy_host_tests::fixtures::{blocks, with};
-use rarefy_host_tests::frames::{Prepared, no_opencl};
+use rarefy_host_tests::frames::{Prepared, device, no_opencl, twin};
 
 /// Every check fails: with blocks of 4, fifteen sixteenths of the pixels are sources of correction's first round, each
 /// with five items. That was more than the masks held, and corrupted the heap under OpenCL.
@@ -18,10 +18,10 @@ fn a_frame_in_which_every_check_fails_fits_its_buffers() {
             method.checks.coarse.t_pos = 0.0;
         });
         let prepared = Prepared::named("rods");
-        let twin = prepared.draw(&mut prepared.twin(), &options, false).unwrap();
+        let twin = prepared.draw(&mut twin(), &options, false).unwrap();
         assert_eq!(twin.counts.interpolated, 0);
         if !no_opencl() {
-            let mut device = prepared.device(true, &OpenOptions::default());
+            let mut device = device(true, &OpenOptions::default());
             assert_eq!(twin, prepared.draw(&mut device, &options, false).unwrap());
         }
     }

@@ -5,13 +5,15 @@
 use std::collections::HashMap;
 
 use rarefy::analysis::layers::{self, Layer};
+use rarefy::device::open::{DeviceChoice, DeviceOptions};
 use rarefy::device::opencl::Profile;
 use rarefy::layout::Traversal;
+use rarefy::method::counts::Keep;
 use rarefy::method::options::{Interpolation, Method, Mode, RenderOptions};
-use rarefy::render::renderer::{DeviceChoice, Keep, Renderer, RendererOptions};
+use rarefy::render::renderer::Renderer;
 use rarefy::scene::builtin;
 use rarefy_host_tests::fixtures::{blocks, corrections};
-use rarefy_host_tests::frames::{no_opencl, walking_by};
+use rarefy_host_tests::frames::{no_opencl, renderer_of, walking_by};
 
 /// Odd sides, so that work-groups stick out on both.
 const WIDTH: u32 = 125;
@@ -19,8 +21,8 @@ const HEIGHT: u32 = 93;
 
 fn renderer(profile: Option<&Profile>) -> Renderer {
     let device = DeviceChoice::OpenCl(None);
-    let options = RendererOptions { device, profile: profile.cloned(), ..RendererOptions::default() };
-    Renderer::new(builtin::to_scene("spheres").unwrap(), &options, &rarefy::Monitor::default()).unwrap()
+    let options = DeviceOptions { device, profile: profile.cloned(), ..DeviceOptions::default() };
+    renderer_of(&builtin::to_scene("spheres").unwrap(), &options, &rarefy::Monitor::default()).unwrap()
 }
 
 /// Each feature with a name.

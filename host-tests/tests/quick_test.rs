@@ -6,23 +6,26 @@ use std::path::{Path, PathBuf};
 
 use rarefy::Error;
 use rarefy::device::kernels::Mutation;
+use rarefy::device::open::{DeviceChoice, DeviceOptions};
 use rarefy::device::opencl::{CacheFolder, OpenOptions, Profile};
 use rarefy::device::stage::Stage;
+use rarefy::method::counts::Keep;
 use rarefy::method::options::RenderOptions;
-use rarefy::render::renderer::{DeviceChoice, Keep, Renderer, RendererOptions};
+use rarefy::prepare::Shading;
+use rarefy::render::renderer::Renderer;
 use rarefy::scene::builtin;
 use rarefy::selftest::quick::Known;
 use rarefy::selftest::{full, quick};
-use rarefy_host_tests::frames::{Prepared, no_opencl};
+use rarefy_host_tests::frames::{device, no_opencl, renderer_of};
 
 const OPENCL: DeviceChoice = DeviceChoice::OpenCl(None);
 
-fn options(device: DeviceChoice, cache: &Path, mutation: Option<Mutation>) -> RendererOptions {
-    RendererOptions { device, cache: CacheFolder::At(cache.into()), mutation, ..RendererOptions::default() }
+fn options(device: DeviceChoice, cache: &Path, mutation: Option<Mutation>) -> DeviceOptions {
+    DeviceOptions { device, cache: CacheFolder::At(cache.into()), mutation, ..DeviceOptions::default() }
 }
 
-fn renderer(options: &RendererOptions) -> rarefy::Result<Renderer> {
-    Renderer::new(builtin::to_scene("spheres").unwrap(), options, &rarefy::Monitor::default())
+fn renderer(options: &DeviceOptions) -> rarefy::Result<Renderer> {
+    renderer_of(&builtin::to_scene("spheres").unwrap(), options, &rarefy::Monitor::default())
 }
 
 fn verdicts(cache: &Path) -> Vec<PathBuf> {
@@ -30,11 +33,11 @@ fn verdicts(cache: &Path) -> Vec<PathBuf> {
     files.filter(|path| path.extension().is_some_and(|suffix| suffix == "verdict")).collect()
 }
 
-/// Tests a device opened for `prepared` with a cache in `cache`.
-fn check(prepared: &Prepared, cache: &Path, profile: Option<&Profile>) -> rarefy::Result<Known> {
+/// Tests a device opened with a cache in `cache`.
+fn check(cache: &Path, profile: Option<&Profile>) -> rarefy::Result<Known> {
     let open =
         OpenOptions { cache: CacheFolder::At(cache.into()), profile: profile.cloned(), ..OpenOptions::default() };
-    quick::check(&mut prepared.device(false, &open), profile)
+    quick::check(&mut device(false, &open), Shading::Full, profile)
 }
 
 #[test]
@@ -43,26 +46,25 @@ fn a_device_is_tested_once() {
         return;
     }
     let folder = tempfile::tempdir().unwrap();
-    let prepared = Prepared::named("spheres");
-    assert_eq!(check(&prepared, folder.path(), None).unwrap(), Known::Tested);
-    assert_eq!(check(&prepared, folder.path(), None).unwrap(), Known::FromCache);
+    assert_eq!(check(folder.path(), None).unwrap(), Known::Tested);
+    assert_eq!(check(folder.path(), None).unwrap(), Known::FromCache);
     let entry = verdicts(folder.path()).remove(0);
     let sound = std::fs::read(&entry).unwrap();
     // A damaged entry only causes a new run, which mends it.
     for damaged in [sound[..sound.len() - 1].to_vec(), Vec::new(), [&sound[..], b"!"].concat()] {
         std::fs::write(&entry, damaged).unwrap();
-        assert_eq!(check(&prepared, folder.path(), None).unwrap(), Known::Tested);
-        assert_eq!(check(&prepared, folder.path(), None).unwrap(), Known::FromCache);
+        assert_eq!(check(folder.path(), None).unwrap(), Known::Tested);
+        assert_eq!(check(folder.path(), None).unwrap(), Known::FromCache);
         assert_eq!(std::fs::read(&entry).unwrap(), sound);
     }
     // Another profile is another device.
     let phone = Profile::named("adreno-420").unwrap();
-    assert_eq!(check(&prepared, folder.path(), Some(&phone)).unwrap(), Known::Tested);
-    assert_eq!(check(&prepared, folder.path(), Some(&phone)).unwrap(), Known::FromCache);
+    assert_eq!(check(folder.path(), Some(&phone)).unwrap(), Known::Tested);
+    assert_eq!(check(folder.path(), Some(&phone)).unwrap(), Known::FromCache);
     assert_eq!(verdicts(folder.path()).len(), 2);
     // So is another build of the kernels.
     let open = OpenOptions { cache: CacheFolder::At(folder.path().into()), ..OpenOptions::default() };
-    assert_eq!(quick::check(&mut prepared.device(true, &open), None).unwrap(), Known::Tested);
+    assert_eq!(quick::check(&mut device(true, &open), Shading::Full, None).unwrap(), Known::Tested);
 }
 
 #[test]
@@ -76,7 +78,7 @@ fn a_renderer_leaves_a_verdict_and_draws_its_own_scene() {
     let mut pictures = Vec::new();
     for _ in 0..2 {
         let mut renderer =
-            Renderer::new(scene(), &options(OPENCL, folder.path(), None), &rarefy::Monitor::default()).unwrap();
+            renderer_of(&scene(), &options(OPENCL, folder.path(), None), &rarefy::Monitor::default()).unwrap();
         assert!(renderer.notices().is_empty());
         pictures.push((renderer.render(&frame, Keep::default()).unwrap().pixels, renderer.peak_device_bytes()));
     }
@@ -125,7 +127,7 @@ fn auto_falls_back_with_a_notice() {
     let folder = tempfile::tempdir().unwrap();
     let broken = options(DeviceChoice::Auto, folder.path(), Some(full::breaking_mutation(Stage::Step2b)));
     for _ in 0..2 {
-        let mut fallen = renderer(&broken).unwrap();
+        let fallen = renderer(&broken).unwrap();
         assert_eq!(fallen.info().backend, "cpu");
         let notices = fallen.notices().to_vec();
         assert_eq!(notices.len(), 1, "{notices:?}");
@@ -135,13 +137,13 @@ fn auto_falls_back_with_a_notice() {
     }
     // A program that does not even build.
     let mutation = Mutation { file: "pack.cl".into(), from: "__kernel".into(), to: "__colonel".into() };
-    let mut fallen = renderer(&options(DeviceChoice::Auto, folder.path(), Some(mutation.clone()))).unwrap();
+    let fallen = renderer(&options(DeviceChoice::Auto, folder.path(), Some(mutation.clone()))).unwrap();
     assert_eq!(fallen.info().backend, "cpu");
     assert!(fallen.notices()[0].contains("`pack` does not build"), "{:?}", fallen.notices());
     let refused = renderer(&options(OPENCL, folder.path(), Some(mutation))).err();
     assert!(matches!(refused, Some(Error::KernelBuild { .. })), "{refused:?}");
     // Only verdicts are kept, and an intact device is none the worse.
     assert_eq!(verdicts(folder.path()).len(), 1);
-    let mut sound = renderer(&options(DeviceChoice::Auto, folder.path(), None)).unwrap();
+    let sound = renderer(&options(DeviceChoice::Auto, folder.path(), None)).unwrap();
     assert_eq!((sound.info().backend, sound.notices().len()), ("opencl", 0));
 }

@@ -3,22 +3,26 @@
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use std::collections::BTreeSet;
+use std::ops::Range;
 use std::path::Path;
+use std::sync::Arc;
 
 use rarefy::Monitor;
 use rarefy::Scene;
-use rarefy::device::backend::{Backend, BackendInfo, BufferSizes, FrameBuffer, MemoryLimits};
-use rarefy::device::hooks::parity::{KernelParity, ParityBackend};
+use rarefy::device::executor::{Executor, ExecutorInfo, MemoryLimits};
+use rarefy::device::frame_memory::{FrameBuffer, FrameHandle, FrameInputs, FrameSizes};
+use rarefy::device::hooks::parity::KernelParity;
 use rarefy::device::kernels::Mutation;
+use rarefy::device::launch::{Launch, SceneHandle};
 use rarefy::device::opencl::{OpenOptions, Profile};
 use rarefy::device::stage::{Kernel, LAUNCHES, Stage};
-use rarefy::device::twin::executor::TwinBackend;
-use rarefy::layout::{FrameParams, StepParams, struct_layout};
+use rarefy::device::twin::executor::TwinExecutor;
+use rarefy::layout::struct_layout;
 use rarefy::method::options::{GcolSpace, Interpolation, Method, Mode, RenderOptions, TestSet};
-use rarefy::prepare::scene_buffers::Shading;
+use rarefy::prepare::{PreparedScene, Shading};
 use rarefy::scene::builtin;
 use rarefy_host_tests::fixtures::{blocks, corrections, sweeps, with};
-use rarefy_host_tests::frames::{Prepared, no_opencl, zoo};
+use rarefy_host_tests::frames::{Prepared, device, mutated_device, no_opencl, twin, zoo};
 
 fn sized(width: u32, height: u32) -> RenderOptions {
     RenderOptions { width, height, ..RenderOptions::default() }
@@ -31,21 +35,17 @@ fn full(options: &RenderOptions) -> RenderOptions {
 /// Draws `frames` launch by launch on the twin and on `device`, each launch fed the twin's own inputs.
 fn compare(
     prepared: &Prepared,
-    device: &mut dyn Backend,
+    device: &mut dyn Executor,
     frames: impl IntoIterator<Item = (RenderOptions, bool)>,
 ) -> Vec<KernelParity> {
-    let mut parity = ParityBackend::new(prepared.twin(), device);
+    let mut all = Vec::new();
     for (options, counters) in frames {
-        prepared.draw(&mut parity, &options, counters).unwrap();
-        let clean = parity.results.iter().all(|r| r.different == 0);
-        assert!(
-            clean,
-            "{}: {options:?}, counters {counters}: {:#?}",
-            prepared.scene.name(),
-            differing(&parity.results)
-        );
+        let results = prepared.parity(device, &options, counters, None).unwrap();
+        let clean = results.iter().all(|r| r.different == 0);
+        assert!(clean, "{}: {options:?}, counters {counters}: {:#?}", prepared.scene.name(), differing(&results));
+        all.extend(results);
     }
-    parity.results
+    all
 }
 
 fn differing(results: &[KernelParity]) -> Vec<&KernelParity> {
@@ -76,7 +76,7 @@ fn every_launch_of_every_kind_of_frame_equals_the_twin() {
         return;
     }
     let prepared = Prepared::named("zoo");
-    let mut device = prepared.device(true, &OpenOptions::default());
+    let mut device = device(true, &OpenOptions::default());
     // Counting or not in turn: the flavours are two programs, and the options do not care.
     let frames = combinations(50, 38).into_iter().enumerate().map(|(i, options)| (options, i % 2 == 0));
     let results = compare(&prepared, &mut device, frames);
@@ -92,7 +92,7 @@ fn frames_of_every_size_and_scene_equal_the_twin() {
     }
     for name in builtin::NAMES {
         let prepared = Prepared::named(name);
-        let mut device = prepared.device(true, &OpenOptions::default());
+        let mut device = device(true, &OpenOptions::default());
         let sizes = [(1, 1), (1, 7), (7, 1), (2, 2), (3, 5), (33, 17)];
         let mut frames = Vec::new();
         for (i, (width, height)) in sizes.into_iter().enumerate() {
@@ -113,7 +113,7 @@ fn large_frames_with_scans_of_several_levels_equal_the_twin() {
     }
     // 210x150 has 260 chunks of A1 items, more than a scan's work-group of 256.
     let prepared = Prepared::named("cafe");
-    let mut device = prepared.device(true, &OpenOptions::default());
+    let mut device = device(true, &OpenOptions::default());
     let four = RenderOptions { method: blocks(4), ..sized(210, 150) };
     let linear = with(&sized(210, 150), |method| {
         method.checks.gcol_space = GcolSpace::Linear;
@@ -133,7 +133,7 @@ fn scans_in_small_groups_equal_the_twin() {
             r#"{{"limits":{{"cl_kernel_work_group_size":{{"value":{group},"certainty":"inferred","source":"test"}}}}}}"#
         );
         let profile = Some(Profile::from_json("tight", &limits).unwrap());
-        prepared.device(true, &OpenOptions { profile, ..OpenOptions::default() })
+        device(true, &OpenOptions { profile, ..OpenOptions::default() })
     };
     for group in [2, 8] {
         let mut device = under(group);
@@ -152,7 +152,7 @@ fn anchor_shading_equals_the_twin() {
     }
     for name in ["spheres", "mirror-room"] {
         let prepared = Prepared::new(builtin::to_scene(name).unwrap(), Shading::Anchor);
-        let mut device = prepared.device(true, &OpenOptions::default());
+        let mut device = device(true, &OpenOptions::default());
         let frames = [(full(&sized(50, 38)), true), (full(&sized(33, 17)), false), (sized(50, 38), false)];
         compare(&prepared, &mut device, frames);
     }
@@ -164,7 +164,7 @@ fn strictest_and_laxest_tolerances_equal_the_twin() {
         return;
     }
     let prepared = Prepared::named("zoo");
-    let mut device = prepared.device(true, &OpenOptions::default());
+    let mut device = device(true, &OpenOptions::default());
     let frame = |t_pos: f32, tests: TestSet| {
         let checked = with(&sized(50, 38), |method| {
             method.checks.fine.t_pos = t_pos;
@@ -177,7 +177,7 @@ fn strictest_and_laxest_tolerances_equal_the_twin() {
     // With no test at all nothing but the border is traced, with the strictest one everything is.
     let strict = prepared.draw(&mut device, &frame(0.0, TestSet::ALL).0, false).unwrap();
     assert_eq!(strict.counts.interpolated, 0);
-    assert_eq!(strict.pixels, prepared.draw(&mut prepared.twin(), &full(&sized(50, 38)), false).unwrap().pixels);
+    assert_eq!(strict.pixels, prepared.draw(&mut twin(), &full(&sized(50, 38)), false).unwrap().pixels);
 }
 
 #[test]
@@ -187,12 +187,12 @@ fn whole_strict_frames_equal_those_of_the_twin() {
     }
     for name in ["zoo", "mirror-room", "rods", "cafe"] {
         let prepared = Prepared::named(name);
-        let mut device = prepared.device(true, &OpenOptions::default());
+        let mut device = device(true, &OpenOptions::default());
         let sweeps = RenderOptions { method: sweeps(), ..sized(96, 64) };
         let four = RenderOptions { method: blocks(4), ..sized(96, 64) };
         for options in [sized(96, 64), four, sweeps, full(&sized(96, 64))] {
             let drawn = prepared.draw(&mut device, &options, false).unwrap();
-            assert!(drawn == prepared.draw(&mut prepared.twin(), &options, false).unwrap(), "{name}: {options:?}");
+            assert!(drawn == prepared.draw(&mut twin(), &options, false).unwrap(), "{name}: {options:?}");
         }
     }
 }
@@ -204,33 +204,33 @@ fn forced_slices_and_two_runs_give_the_same_picture() {
     }
     let prepared = Prepared::named("zoo");
     for options in [sized(50, 38), full(&sized(50, 38)), RenderOptions { method: blocks(4), ..sized(33, 17) }] {
-        let first = prepared.draw(&mut prepared.device(false, &OpenOptions::default()), &options, false).unwrap();
-        let mut again = prepared.device(false, &OpenOptions::default());
+        let first = prepared.draw(&mut device(false, &OpenOptions::default()), &options, false).unwrap();
+        let mut again = device(false, &OpenOptions::default());
         assert!(prepared.draw(&mut again, &options, false).unwrap() == first, "another device object: {options:?}");
         assert!(prepared.draw(&mut again, &options, false).unwrap() == first, "a second frame: {options:?}");
         for items in [1, 100] {
             let open = OpenOptions { slice_items: Some(items), ..OpenOptions::default() };
-            let mut sliced = prepared.device(false, &open);
+            let mut sliced = device(false, &open);
             assert!(prepared.draw(&mut sliced, &options, false).unwrap() == first, "slices of {items}: {options:?}");
             assert!(2 * sliced.door().enqueues() > again.door().enqueues(), "nothing was cut");
         }
-        let twin = prepared.draw(&mut prepared.twin(), &options, false).unwrap();
-        assert!(prepared.draw(&mut prepared.twin(), &options, false).unwrap() == twin, "twin: {options:?}");
+        let on_twin = prepared.draw(&mut twin(), &options, false).unwrap();
+        assert!(prepared.draw(&mut twin(), &options, false).unwrap() == on_twin, "twin: {options:?}");
     }
 }
 
 /// Full and adaptive frames of a fast build against the twin.
 fn fast_build_is_close(scene: Scene, side: u32) {
     let prepared = Prepared::new(scene, Shading::Full);
-    let mut device = prepared.device(false, &OpenOptions::default());
+    let mut device = device(false, &OpenOptions::default());
     let pixels = f64::from(side) * f64::from(side);
     let options = full(&sized(side, side));
     let ours = prepared.draw(&mut device, &options, false).unwrap();
-    let twin = prepared.draw(&mut prepared.twin(), &options, false).unwrap();
-    let apart = ours.pixels_apart(&twin, 1);
+    let on_twin = prepared.draw(&mut twin(), &options, false).unwrap();
+    let apart = ours.pixels_apart(&on_twin, 1);
     let options = sized(side, side);
     let adaptive = prepared.draw(&mut device, &options, false).unwrap();
-    let adaptive_twin = prepared.draw(&mut prepared.twin(), &options, false).unwrap();
+    let adaptive_twin = prepared.draw(&mut twin(), &options, false).unwrap();
     let classes = adaptive.classes_apart(&adaptive_twin);
     let adaptive_apart = adaptive.pixels_apart(&adaptive_twin, 1);
     println!(
@@ -269,12 +269,12 @@ fn real_scenes_are_drawn_alike() {
     for path in scenes {
         let load = |path: &Path| rarefy::scene::load(path, &Monitor::default()).unwrap();
         let prepared = Prepared::new(load(&path), Shading::Full);
-        let mut device = prepared.device(true, &OpenOptions::default());
+        let mut device = device(true, &OpenOptions::default());
         for options in [full(&sized(512, 512)), sized(512, 512), RenderOptions { method: blocks(4), ..sized(512, 512) }]
         {
             let drawn = prepared.draw(&mut device, &options, false).unwrap();
-            let twin = prepared.draw(&mut prepared.twin(), &options, false).unwrap();
-            assert!(drawn == twin, "{}: strict builds differ: {options:?}", path.display());
+            let on_twin = prepared.draw(&mut twin(), &options, false).unwrap();
+            assert!(drawn == on_twin, "{}: strict builds differ: {options:?}", path.display());
         }
         drop((prepared, device));
         fast_build_is_close(load(&path), 512);
@@ -286,10 +286,8 @@ fn the_device_lays_structs_out_as_the_host_does() {
     if no_opencl() {
         return;
     }
-    let prepared = Prepared::named("wall");
-    let mut device = prepared.device(true, &OpenOptions::default());
     let expected: Vec<u32> = struct_layout().iter().map(|entry| entry.bytes).collect();
-    assert_eq!(device.probe().unwrap(), expected);
+    assert_eq!(device(true, &OpenOptions::default()).probe().unwrap(), expected);
     // The comparison can fail: by a member too many, and by any two that swapped places.
     for (from, to) in [
         ("  uint depth_limit;", "  uint inserted; uint depth_limit;"),
@@ -300,20 +298,21 @@ fn the_device_lays_structs_out_as_the_host_does() {
             "  uint height;\n  uint width;\n  uint pad0;\n} Texture",
         ),
     ] {
-        device.mutate(Some(Mutation { file: "types.h".into(), from: from.into(), to: to.into() }));
-        assert_ne!(device.probe().unwrap(), expected, "{from}");
+        let mutation = Mutation { file: "types.h".into(), from: from.into(), to: to.into() };
+        let mut other = mutated_device(true, &OpenOptions::default(), Some(mutation));
+        assert_ne!(other.probe().unwrap(), expected, "{from}");
     }
 }
 
 /// A twin that changes the first word of `buffer` after each launch of a kernel by a stage.
 struct Tampered {
-    inner: TwinBackend,
+    inner: TwinExecutor,
     launch: (Stage, Kernel),
     buffer: FrameBuffer,
 }
 
-impl Backend for Tampered {
-    fn info(&self) -> BackendInfo {
+impl Executor for Tampered {
+    fn info(&self) -> ExecutorInfo {
         self.inner.info()
     }
     fn scan_group(&self) -> u32 {
@@ -322,7 +321,6 @@ impl Backend for Tampered {
     fn memory_limits(&self) -> MemoryLimits {
         self.inner.memory_limits()
     }
-
     fn prefers_few_launches(&self) -> bool {
         self.inner.prefers_few_launches()
     }
@@ -330,25 +328,28 @@ impl Backend for Tampered {
     fn traversal(&self) -> rarefy::layout::Traversal {
         self.inner.traversal()
     }
-    fn begin(&mut self, frame: &FrameParams, sizes: &BufferSizes) -> rarefy::Result<()> {
-        self.inner.begin(frame, sizes)
+    fn upload(&mut self, scene: &Arc<PreparedScene>) -> rarefy::Result<SceneHandle> {
+        self.inner.upload(scene)
     }
-    fn run(&mut self, stage: Stage, kernel: Kernel, step: &StepParams) -> rarefy::Result<()> {
-        self.inner.run(stage, kernel, step)?;
-        if (stage, kernel) == self.launch {
-            let first = self.inner.read(self.buffer, 0..1)?[0];
-            self.inner.write(self.buffer, &[first ^ 1])?;
+    fn allocate(&mut self, inputs: &FrameInputs, sizes: &FrameSizes) -> rarefy::Result<FrameHandle> {
+        self.inner.allocate(inputs, sizes)
+    }
+    fn begin(&mut self, frame: &mut FrameHandle, inputs: &FrameInputs) -> rarefy::Result<()> {
+        self.inner.begin(frame, inputs)
+    }
+    fn run(&mut self, launch: &Launch) -> rarefy::Result<()> {
+        self.inner.run(launch)?;
+        if (launch.stage, launch.kernel) == self.launch {
+            let first = self.inner.read(launch.frame, self.buffer, 0..1)?[0];
+            self.inner.write(launch.frame, self.buffer, &[first ^ 1])?;
         }
         Ok(())
     }
-    fn read_sum(&mut self, at: u32) -> rarefy::Result<u32> {
-        self.inner.read_sum(at)
+    fn read(&mut self, frame: &FrameHandle, buffer: FrameBuffer, range: Range<usize>) -> rarefy::Result<Vec<u32>> {
+        self.inner.read(frame, buffer, range)
     }
-    fn read(&mut self, buffer: FrameBuffer, range: std::ops::Range<usize>) -> rarefy::Result<Vec<u32>> {
-        self.inner.read(buffer, range)
-    }
-    fn write(&mut self, buffer: FrameBuffer, words: &[u32]) -> rarefy::Result<()> {
-        self.inner.write(buffer, words)
+    fn write(&mut self, frame: &FrameHandle, buffer: FrameBuffer, words: &[u32]) -> rarefy::Result<()> {
+        self.inner.write(frame, buffer, words)
     }
     fn take_timings(&mut self) -> rarefy::Result<Vec<(Stage, f64)>> {
         self.inner.take_timings()
@@ -369,7 +370,7 @@ fn the_comparison_sees_one_changed_word_of_any_buffer() {
     use FrameBuffer::*;
     let prepared = Prepared::named("spheres");
     let options = sized(33, 17);
-    compare(&prepared, &mut prepared.twin(), [(options.clone(), true)]);
+    compare(&prepared, &mut twin(), [(options.clone(), true)]);
     for (stage, kernel, buffer) in [
         (Stage::Step1, Kernel::Trace, Attributes),
         (Stage::Step2a, Kernel::Check, Color),
@@ -378,10 +379,9 @@ fn the_comparison_sees_one_changed_word_of_any_buffer() {
         (Stage::Step3b, Kernel::PackScatter, List),
         (Stage::Step3c, Kernel::Trace, Counters),
     ] {
-        let mut device = Tampered { inner: prepared.twin(), launch: (stage, kernel), buffer };
-        let mut parity = ParityBackend::new(prepared.twin(), &mut device);
-        prepared.draw(&mut parity, &options, true).unwrap();
-        let caught = differing(&parity.results);
+        let mut device = Tampered { inner: twin(), launch: (stage, kernel), buffer };
+        let results = prepared.parity(&mut device, &options, true, None).unwrap();
+        let caught = differing(&results);
         assert_eq!(caught.len(), 1, "{}", kernel.label(stage));
         // Step III runs once for the even columns and once for the odd ones.
         let launches = if stage >= Stage::Step3a { 2 } else { 1 };
@@ -389,8 +389,8 @@ fn the_comparison_sees_one_changed_word_of_any_buffer() {
         assert_eq!(caught[0].first.map(|f| (f.0, f.1)), Some((buffer, 0)));
     }
     // Pictures and classes of whole frames, too.
-    let drawn = prepared.draw(&mut prepared.twin(), &options, false).unwrap();
-    let mut other = prepared.draw(&mut prepared.twin(), &options, false).unwrap();
+    let drawn = prepared.draw(&mut twin(), &options, false).unwrap();
+    let mut other = prepared.draw(&mut twin(), &options, false).unwrap();
     other.pixels[5] ^= 0x0200;
     other.classes[7] ^= 1;
     assert!(drawn != other);

@@ -8,20 +8,21 @@ use std::collections::BTreeSet;
 use glam::Vec3;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngSeed};
-use rarefy::device::backend::{Backend, FrameBuffer};
-use rarefy::device::hooks::parity::ParityBackend;
+use rarefy::device::executor::Executor;
+use rarefy::device::frame_memory::FrameBuffer;
 use rarefy::device::opencl::OpenOptions;
 use rarefy::device::stage::LAUNCHES;
 use rarefy::device::twin::SceneArgs;
+use rarefy::device::twin::executor::TwinExecutor;
 use rarefy::device::twin::scene_args::Work;
 use rarefy::device::twin::traverse::{Hit, any_hit, closest_hit};
-use rarefy::layout::{PLANE_COUNT, Traversal};
+use rarefy::layout::Traversal;
 use rarefy::method::options::{Mode, RenderOptions};
+use rarefy::prepare::Shading;
 use rarefy::prepare::kdtree::{KdNode, KdTree, MAX_DEPTH};
-use rarefy::prepare::scene_buffers::Shading;
 use rarefy::scene::{Scene, Surface};
 use rarefy_host_tests::fixtures::{Random, SceneBuilder, Stand, blocks, glass, matte, mirror, sweeps, v};
-use rarefy_host_tests::frames::{Prepared, no_opencl, walking_by};
+use rarefy_host_tests::frames::{Prepared, device, no_opencl, twin, walking_by, words};
 
 const WITHOUT_ARRAYS: [Traversal; 2] = [Traversal::ShortStack, Traversal::Stackless];
 
@@ -86,13 +87,13 @@ fn odd_stand(seed: u64, slice: bool) -> Stand {
     let mut stand = Stand::new(&scene, 1, 1, 0);
     let corners = |id: usize| scene.triangles()[id].map(|i| scene.positions()[i as usize]);
     let boxes = (0..scene.triangles().len()).map(corners).map(|[a, b, c]| [a.min(b).min(c), a.max(b).max(c)]).collect();
-    let (lo, hi) = (stand.buffers.tree.bounds_min, stand.buffers.tree.bounds_max);
+    let (lo, hi) = (stand.prepared.tree().bounds_min, stand.prepared.tree().bounds_max);
     let tree =
         KdTree { nodes: vec![KdNode::leaf(0, 0); 2], leaf_triangles: Vec::new(), bounds_min: lo, bounds_max: hi };
     let mut grower = Grower { random: &mut random, boxes, tree, slice };
     let ids: Vec<u32> = (0..scene.triangles().len() as u32).collect();
     grower.grow(0, Vec3::from(lo), Vec3::from(hi), &ids, 0);
-    stand.buffers.tree = grower.tree;
+    (stand.nodes, stand.leaf_triangles) = (grower.tree.nodes, grower.tree.leaf_triangles);
     stand
 }
 
@@ -175,10 +176,9 @@ fn deep_trees_outrun_the_short_stack() {
 }
 
 /// Picture and attribute planes of a frame whose sides are multiples of its blocks.
-fn planes(prepared: &Prepared, backend: &mut dyn Backend, options: &RenderOptions) -> (Vec<u32>, Vec<u32>) {
-    let drawn = prepared.draw(backend, options, false).unwrap();
-    let words = PLANE_COUNT as usize * drawn.pixels.len();
-    (drawn.pixels, backend.read(FrameBuffer::Attributes, 0..words).unwrap())
+fn planes(prepared: &Prepared, executor: &mut dyn Executor, options: &RenderOptions) -> (Vec<u32>, Vec<u32>) {
+    let (drawn, frame) = prepared.draw_observed(executor, options, false, &mut []).unwrap();
+    (drawn.pixels, words(executor, &frame, FrameBuffer::Attributes))
 }
 
 fn sized(width: u32, height: u32) -> RenderOptions {
@@ -192,10 +192,9 @@ proptest! {
     fn random_scenes_look_the_same_in_every_way(seed in 1u64..u64::MAX, count in 4usize..200, size in 0.05f32..0.8) {
         let prepared = Prepared::new(random_scene(&mut Random::new(seed), count, size), Shading::Full);
         for options in [sized(48, 36), RenderOptions { mode: Mode::Full, ..sized(48, 36) }] {
-            let expected = planes(&prepared, &mut prepared.twin(), &options);
+            let expected = planes(&prepared, &mut twin(), &options);
             for traversal in WITHOUT_ARRAYS {
-                let mut twin = prepared.twin();
-                twin.walk_by(traversal);
+                let mut twin = TwinExecutor::walking_by(traversal);
                 prop_assert!(planes(&prepared, &mut twin, &options) == expected, "{}", traversal.name());
             }
         }
@@ -215,24 +214,24 @@ fn every_launch_equals_that_of_a_twin_that_walks_alike() {
         RenderOptions { method: sweeps(), ..sized(50, 38) },
     ];
     for traversal in WITHOUT_ARRAYS {
-        let mut device = prepared.device(true, &walking_by(traversal));
+        let mut device = device(true, &walking_by(traversal));
         assert_eq!(device.traversal(), traversal);
-        let mut parity = ParityBackend::new(prepared.twin(), &mut device);
+        let mut results = Vec::new();
         for options in &frames {
-            prepared.draw(&mut parity, options, true).unwrap();
+            results.extend(prepared.parity(&mut device, options, true, None).unwrap());
         }
-        let different: Vec<_> = parity.results.iter().filter(|result| result.different > 0).collect();
+        let different: Vec<_> = results.iter().filter(|result| result.different > 0).collect();
         assert!(different.is_empty(), "{}: {different:#?}", traversal.name());
-        let launched: BTreeSet<&str> = parity.results.iter().map(|result| result.kernel.label(result.stage)).collect();
+        let launched: BTreeSet<&str> = results.iter().map(|result| result.kernel.label(result.stage)).collect();
         assert_eq!(launched, LAUNCHES.iter().map(|(.., label)| *label).collect());
     }
     // A twin that walks otherwise is told by its steps, and by nothing else.
-    let mut device = prepared.device(true, &walking_by(Traversal::Stackless));
-    let counted = |backend: &mut dyn Backend| {
-        let drawn = prepared.draw(backend, &frames[0], true).unwrap();
-        (backend.read(FrameBuffer::Counters, 0..2 * drawn.pixels.len()).unwrap(), drawn)
+    let mut device = device(true, &walking_by(Traversal::Stackless));
+    let counted = |executor: &mut dyn Executor| {
+        let (drawn, frame) = prepared.draw_observed(executor, &frames[0], true, &mut []).unwrap();
+        (executor.read(&frame, FrameBuffer::Counters, 0..2 * drawn.pixels.len()).unwrap(), drawn)
     };
-    let (on_device, on_twin) = (counted(&mut device), counted(&mut prepared.twin()));
+    let (on_device, on_twin) = (counted(&mut device), counted(&mut twin()));
     assert!(on_device.1 == on_twin.1);
     let pixels = on_device.1.pixels.len();
     assert_ne!(on_device.0[..pixels], on_twin.0[..pixels], "steps");
@@ -247,23 +246,22 @@ fn strict_kernels_draw_the_same_in_every_way() {
     for name in ["zoo", "cafe"] {
         let prepared = Prepared::named(name);
         let options = sized(96, 64);
-        let expected = planes(&prepared, &mut prepared.device(true, &OpenOptions::default()), &options);
+        let expected = planes(&prepared, &mut device(true, &OpenOptions::default()), &options);
         for traversal in WITHOUT_ARRAYS {
-            let mut device = prepared.device(true, &walking_by(traversal));
+            let mut device = device(true, &walking_by(traversal));
             assert!(planes(&prepared, &mut device, &options) == expected, "{name}, {}", traversal.name());
         }
-        let other = planes(&prepared, &mut prepared.twin(), &RenderOptions { depth: 1, ..options });
+        let other = planes(&prepared, &mut twin(), &RenderOptions { depth: 1, ..options });
         assert!(other != expected, "the comparison sees nothing");
     }
 }
 
 /// Steps of all rays of a frame on the twin, and the picture.
 fn steps(prepared: &Prepared, traversal: Traversal, options: &RenderOptions) -> (u64, Vec<u32>) {
-    let mut twin = prepared.twin();
-    twin.walk_by(traversal);
-    let drawn = prepared.draw(&mut twin, options, true).unwrap();
+    let mut twin = TwinExecutor::walking_by(traversal);
+    let (drawn, frame) = prepared.draw_observed(&mut twin, options, true, &mut []).unwrap();
     // The first counter plane; with these sizes no block sticks out.
-    let words = twin.read(FrameBuffer::Counters, 0..drawn.pixels.len()).unwrap();
+    let words = twin.read(&frame, FrameBuffer::Counters, 0..drawn.pixels.len()).unwrap();
     (words.iter().map(|&word| u64::from(word)).sum(), drawn.pixels)
 }
 

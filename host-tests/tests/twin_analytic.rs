@@ -95,7 +95,7 @@ fn a_mirror_shows_what_the_camera_behind_it_would_see() {
         let target = v(-1.4 + x * 0.035, -0.95 + y * 0.03, 0.0);
         let d = target - eye;
         let Some(look) = mirrored.look(eye, d) else { continue };
-        if mirrored.buffers.materials[look.point.material as usize].surface != SURFACE_MIRROR {
+        if mirrored.args().materials[look.point.material as usize].surface != SURFACE_MIRROR {
             continue;
         }
         let seen = direct.look(behind, v(d.x, d.y, -d.z));

@@ -159,7 +159,7 @@ impl Tally {
 /// Shoots `count` rays of every awkward kind.
 fn shoot(scene: &Scene, stand: &Stand, random: &mut Random, count: usize) -> Tally {
     let mut tally = Tally::default();
-    let tree = &stand.buffers.tree;
+    let tree = stand.prepared.tree();
     let (lo, hi) = (Vec3::from(tree.bounds_min), Vec3::from(tree.bounds_max));
     let size = (hi - lo).max_element();
     let splits: Vec<KdNode> = tree.nodes.iter().copied().filter(|n| !n.is_leaf()).collect();
@@ -368,7 +368,7 @@ fn random_round(seed: u64, count: usize, size: f32, snap: usize) {
 fn the_comparison_notices_lost_triangles_and_wrong_flags() {
     let scene = soup(random_triangles(2, 1000, 0.08));
     let mut stand = Stand::new(&scene, 1, 1, 0);
-    for node in &mut stand.buffers.tree.nodes {
+    for node in &mut stand.nodes {
         if node.is_leaf() && node.payload() > 1 {
             *node = KdNode::leaf(node.split_or_first + 1, node.payload() - 1);
         }
@@ -378,7 +378,7 @@ fn the_comparison_notices_lost_triangles_and_wrong_flags() {
 
     let scene = cutout_scene(31);
     let mut stand = Stand::new(&scene, 1, 1, 0);
-    for triangle in &mut stand.buffers.triangles {
+    for triangle in &mut stand.triangles {
         triangle.corner[3] = 0.0;
     }
     let tally = shoot(&scene, &stand, &mut Random::new(5), 400);
@@ -387,6 +387,6 @@ fn the_comparison_notices_lost_triangles_and_wrong_flags() {
     // One bit of t is a disagreement.
     let scene = soup([[Vec3::ZERO, v(1.0, 0.3, 0.2), v(0.1, 1.0, 0.9)]]);
     let mut stand = Stand::new(&scene, 1, 1, 0);
-    stand.buffers.triangles[0].corner[2] += 1e-6;
+    stand.triangles[0].corner[2] += 1e-6;
     assert!(!shoot(&scene, &stand, &mut Random::new(5), 100).wrong.is_empty());
 }

@@ -1,20 +1,22 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! The wave model says the same of a frame on every back end, and profiles do not change the picture.
+//! The wave model says the same of a frame on every executor, and profiles do not change the picture.
 #![allow(clippy::unwrap_used, missing_docs)]
 
-use rarefy::analysis::compare::wave_model;
+use rarefy::analysis::wave_model::wave_model;
+use rarefy::device::open::{DeviceChoice, DeviceOptions};
 use rarefy::device::profiles::Profile;
 use rarefy::device::stage::Stage;
 use rarefy::layout::Traversal;
+use rarefy::method::counts::Keep;
 use rarefy::method::options::{Mode, RenderOptions};
-use rarefy::render::renderer::{DeviceChoice, Keep, Renderer, RendererOptions};
+use rarefy::render::renderer::Renderer;
 use rarefy::scene::builtin;
 use rarefy_host_tests::fixtures::with;
-use rarefy_host_tests::frames::{no_opencl, walking_by};
+use rarefy_host_tests::frames::{no_opencl, renderer_of, walking_by};
 
 fn renderer(device: DeviceChoice, profile: Option<Profile>) -> Renderer {
-    let options = RendererOptions { device, profile, strict: true, ..RendererOptions::default() };
-    Renderer::new(builtin::to_scene("spheres").unwrap(), &options, &rarefy::Monitor::default()).unwrap()
+    let options = DeviceOptions { device, profile, strict: true, ..DeviceOptions::default() };
+    renderer_of(&builtin::to_scene("spheres").unwrap(), &options, &rarefy::Monitor::default()).unwrap()
 }
 
 fn options() -> RenderOptions {
@@ -60,9 +62,9 @@ fn both_back_ends_and_profiles_agree() {
 #[test]
 fn a_frame_in_bands_has_no_model() {
     let limited =
-        RendererOptions { device: DeviceChoice::Cpu, memory_budget_bytes: Some(2 << 20), ..RendererOptions::default() };
+        DeviceOptions { device: DeviceChoice::Cpu, memory_budget_bytes: Some(2 << 20), ..DeviceOptions::default() };
     let mut renderer =
-        Renderer::new(builtin::to_scene("spheres").unwrap(), &limited, &rarefy::Monitor::default()).unwrap();
+        renderer_of(&builtin::to_scene("spheres").unwrap(), &limited, &rarefy::Monitor::default()).unwrap();
     let large = RenderOptions { width: 500, height: 400, ..RenderOptions::default() };
     let error = wave_model(&mut renderer, &large).unwrap_err().to_string();
     assert!(error.contains("wave model") && error.contains("memory_budget"), "{error}");

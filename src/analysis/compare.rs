@@ -2,12 +2,12 @@
 //! Full and adaptive frames of one scene, in turn: speed, work and quality.
 
 use crate::analysis::metrics::{self, Quality, Rgb8, WrongPixels};
-use crate::analysis::wave_model::{StageCost, WaveModel, stage_costs};
 use crate::error::Result;
 use crate::layout::*;
-use crate::method::frame::{Frame, FrameStats, Keep};
+use crate::method::counts::Keep;
 use crate::method::options::{Mode, RenderOptions};
 use crate::monitor::Monitor;
+use crate::render::frame::{Frame, FrameStats};
 use crate::render::renderer::Renderer;
 
 /// Side of the frames that only build programs, in pixels.
@@ -150,17 +150,6 @@ fn compare_for(monitor: &Monitor, renderer: &mut Renderer, options: &RenderOptio
         full_picture,
         adaptive_frame: adaptive,
     })
-}
-
-/// Models full and adaptive frames in lock-step waves.
-///
-/// # Errors
-/// Whatever drawing reports; a frame that does not fit into memory at once.
-pub fn wave_model(renderer: &mut Renderer, options: &RenderOptions) -> Result<WaveModel> {
-    let mut stages = |mode| -> Result<Vec<StageCost>> {
-        Ok(stage_costs(&renderer.launch_costs(&RenderOptions { mode, ..options.clone() })?))
-    };
-    Ok(WaveModel { full: stages(Mode::Full)?, adaptive: stages(Mode::Adaptive)? })
 }
 
 /// The times of all rounds.

@@ -6,9 +6,10 @@ use glam::Vec3;
 use crate::error::{Error, Result, Setting};
 use crate::layout::*;
 use crate::math::unpack_normal;
-use crate::method::frame::{Frame, Keep};
+use crate::method::counts::Keep;
 use crate::method::options::Test;
 use crate::names::{find, list};
+use crate::render::frame::Frame;
 use crate::render::renderer::Renderer;
 
 /// A picture of one quantity of a frame.

@@ -6,8 +6,8 @@ use serde_json::{Map, Value, json};
 use crate::analysis::compare::Comparison;
 use crate::analysis::wave_model::{StageCost, WAVES, WaveModel};
 use crate::device::stage::Stage;
-use crate::method::frame::{Frame, FrameStats};
 use crate::method::options::{Mode, RenderOptions, Test};
+use crate::render::frame::{Frame, FrameStats};
 use crate::render::renderer::{BuildTimes, Renderer};
 
 /// The statistics of one frame: what `rarefy render` writes.

@@ -5,15 +5,16 @@
 //! slowest lane of each wave. It knows nothing of clocks or caches; what it compares are sums of the same kind. The
 //! weights and what they rest on are in docs/wave-model.md. The unit is a traversal step of one lane.
 
-use std::ops::Range;
-
-use crate::device::backend::Backend;
-use crate::device::backend::FrameBuffer;
-use crate::device::hooks::recording::Recorded;
+use crate::device::executor::Executor;
+use crate::device::frame_memory::{FrameBuffer, FrameHandle};
+use crate::device::hooks::recording::{RecordedLaunch, Recording};
+use crate::device::launch::Hook;
 use crate::device::stage::{Kernel, Stage};
-use crate::error::Result;
+use crate::error::{Error, Remedy, Result, Setting};
 use crate::layout::*;
-use crate::method::bands::read_plane;
+use crate::method::counts::Keep;
+use crate::method::options::{Mode, RenderOptions};
+use crate::render::renderer::Renderer;
 
 /// Lanes of the waves that are modelled.
 pub const WAVES: [usize; 3] = [32, 64, 128];
@@ -114,47 +115,79 @@ fn slowest(lanes: &[f64]) -> f64 {
     lanes.iter().copied().fold(0.0, f64::max)
 }
 
-/// The costs of the launches of a frame that is one window and kept its counters, from the buffers that it left.
+/// Models full and adaptive frames of `options` in lock-step waves.
 ///
 /// # Errors
-/// A failing read.
-pub fn launch_costs(backend: &mut dyn Backend, frame: &FrameParams, launches: &[Recorded]) -> Result<Vec<LaunchCost>> {
-    let list_end = launches.iter().filter_map(listed).map(|listed| listed.end).max().unwrap_or(0);
-    let mut counters = Vec::new();
-    for counter in [COUNTER_TRAVERSAL_STEPS, COUNTER_TRIANGLE_TESTS, COUNTER_SHADED] {
-        counters.push(read_plane(backend, frame, PLANE_COUNT + counter)?);
-    }
-    let classes = if frame.block > 1 { read_plane(backend, frame, PLANE_CLASS)? } else { Vec::new() };
-    let items = FrameItems { frame, counters, classes, list: backend.read(FrameBuffer::List, 0..list_end as usize)? };
-    let cost = |launch: &Recorded| LaunchCost {
+/// Whatever drawing reports; a frame that does not fit into memory at once.
+pub fn wave_model(renderer: &mut Renderer, options: &RenderOptions) -> Result<WaveModel> {
+    let mut stages = |mode| -> Result<Vec<StageCost>> {
+        Ok(stage_costs(&launch_costs(renderer, &RenderOptions { mode, ..options.clone() })?))
+    };
+    Ok(WaveModel { full: stages(Mode::Full)?, adaptive: stages(Mode::Adaptive)? })
+}
+
+/// Draws a frame with counters and returns what each of its launches costs, lane by lane.
+///
+/// # Errors
+/// As for [`wave_model`].
+pub fn launch_costs(renderer: &mut Renderer, options: &RenderOptions) -> Result<Vec<LaunchCost>> {
+    let options = RenderOptions { band_rows: None, ..options.clone() };
+    let (mut recording, mut one_window) = (Recording::default(), OneWindow);
+    let mut observers: [&mut dyn Hook; 2] = [&mut one_window, &mut recording];
+    let (_, items) = renderer.render_observed(&options, Keep::COUNTERS, &mut observers, &mut FrameItems::read)?;
+    let cost = |launch: &RecordedLaunch| LaunchCost {
         stage: launch.stage,
         passes: items.passes(launch),
         waits: matches!(launch.kernel, Kernel::PackCount | Kernel::CorrectCount | Kernel::CorrectTail),
     };
-    Ok(launches.iter().map(cost).collect())
+    Ok(recording.launches.iter().map(cost).collect())
 }
 
-/// The list entries that a launch traces.
-fn listed(launch: &Recorded) -> Option<Range<u32>> {
-    let begin = launch.step.list_offset;
-    match launch.kernel {
-        Kernel::Trace if launch.stage != Stage::Step1 => Some(begin..begin + launch.step.item_count),
-        Kernel::CorrectTail => launch.round_ends.last().map(|&end| begin..end),
-        _ => None,
+/// Refuses frames in bands: what their windows cost is not read.
+struct OneWindow;
+
+impl Hook for OneWindow {
+    fn begin(&mut self, _: &mut dyn Executor, frame: &FrameHandle) -> Result<()> {
+        let FrameParams { height, window_begin, window_end, .. } = *frame.params();
+        if (window_begin, window_end) == (0, height) {
+            return Ok(());
+        }
+        Err(Error::LimitExceeded {
+            what: "the wave model".into(),
+            limit: Setting::MemoryBudget.path().into(),
+            wanted: format!("all {height} rows of samples in memory"),
+            allowed: format!("{} rows", window_end - window_begin),
+            remedies: &[Remedy::SmallerPicture, Remedy::LargerBudget],
+        })
     }
 }
 
 /// What a frame left on the device.
-struct FrameItems<'a> {
-    frame: &'a FrameParams,
+struct FrameItems {
+    frame: FrameParams,
     /// Traversal steps, triangle tests, shaded points.
     counters: Vec<Vec<u32>>,
     classes: Vec<u32>,
     list: Vec<u32>,
 }
 
-impl FrameItems<'_> {
-    fn passes(&self, launch: &Recorded) -> Vec<Vec<f64>> {
+impl FrameItems {
+    fn read(executor: &mut dyn Executor, handle: &FrameHandle) -> Result<Self> {
+        let frame = *handle.params();
+        let pitch = frame.plane_pitch as usize;
+        let mut plane = |buffer, plane: u32| {
+            let at = plane as usize * pitch;
+            executor.read(handle, buffer, at..at + pitch)
+        };
+        let counters = [COUNTER_TRAVERSAL_STEPS, COUNTER_TRIANGLE_TESTS, COUNTER_SHADED];
+        let counters = counters.map(|counter| plane(FrameBuffer::Counters, counter));
+        let counters = counters.into_iter().collect::<Result<_>>()?;
+        let classes = if frame.block > 1 { plane(FrameBuffer::Attributes, PLANE_CLASS)? } else { Vec::new() };
+        let list = executor.read(handle, FrameBuffer::List, 0..handle.sizes().list)?;
+        Ok(FrameItems { frame, counters, classes, list })
+    }
+
+    fn passes(&self, launch: &RecordedLaunch) -> Vec<Vec<f64>> {
         if launch.kernel != Kernel::CorrectTail {
             return vec![self.lanes(launch.stage, launch.kernel, &launch.step)];
         }
@@ -210,7 +243,7 @@ impl FrameItems<'_> {
 
     /// A pixel's ray tree and what it writes.
     fn traced(&self, x: u32, y: u32) -> f64 {
-        let at = plane_index(self.frame, x, y) as usize;
+        let at = plane_index(&self.frame, x, y) as usize;
         let [steps, tests, shaded] = [0, 1, 2].map(|counter| f64::from(self.counters[counter][at]));
         let stored = if self.frame.block > 1 { ATTRIBUTE_BYTES } else { 0.0 };
         steps + TRIANGLE_TEST * tests + SHADED_POINT * shaded + (stored + COLOR_BYTES) / BYTES_PER_STEP
@@ -219,7 +252,7 @@ impl FrameItems<'_> {
     /// A check, and the interpolation where it passed: what correction traced later had been interpolated before.
     fn checked(&self, x: u32, y: u32) -> f64 {
         let read = 2.0 * (ATTRIBUTE_BYTES + COLOR_BYTES) / BYTES_PER_STEP;
-        let at = plane_index(self.frame, x, y) as usize;
+        let at = plane_index(&self.frame, x, y) as usize;
         if matches!(self.classes[at] & CLASS_MASK, CLASS_INTERPOLATED | CLASS_CORRECTED | CLASS_CONFIRMED) {
             // Background is not shaded. What a correction ray left here counts as one point, too.
             let shaded = if self.counters[2][at] > 0 { SHADED_POINT } else { 0.0 };

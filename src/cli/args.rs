@@ -6,11 +6,11 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use rarefy::device::open::{DeviceChoice, DeviceOptions};
 use rarefy::device::profiles::Profile;
 use rarefy::error::Setting;
 use rarefy::method::options::{Mode, RenderOptions};
-use rarefy::prepare::scene_buffers::Shading;
-use rarefy::render::renderer::{DeviceChoice, RendererOptions};
+use rarefy::prepare::Shading;
 use rarefy::{Error, Result};
 
 use super::method::MethodArgs;
@@ -114,18 +114,17 @@ pub struct DrawArgs {
 
 impl DrawArgs {
     /// The renderer's options.
-    pub fn renderer_options(&self) -> Result<RendererOptions> {
+    pub fn device_options(&self) -> Result<DeviceOptions> {
         let budget = self.memory_budget.map(|mib| {
             let bytes = mib.checked_mul(1 << 20).filter(|&bytes| bytes > 0);
             bytes.ok_or_else(|| Error::option(Setting::MemoryBudget, format!("{mib} MiB"), "1 MiB or more"))
         });
-        Ok(RendererOptions {
+        Ok(DeviceOptions {
             device: self.device,
             profile: profile(&self.profile)?,
             strict: matches!(self.build, BuildArg::Strict),
-            shading: self.shading,
             memory_budget_bytes: budget.transpose()?,
-            ..RendererOptions::default()
+            ..DeviceOptions::default()
         })
     }
 

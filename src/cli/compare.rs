@@ -3,10 +3,11 @@
 
 use std::path::Path;
 
-use rarefy::analysis::compare::{Comparison, compare, wave_model};
+use rarefy::analysis::compare::{Comparison, compare};
 use rarefy::analysis::layers;
 use rarefy::analysis::metrics::{CUSTOMARY_GAIN, Rgb8, difference_picture};
 use rarefy::analysis::report;
+use rarefy::analysis::wave_model::wave_model;
 use rarefy::analysis::wave_model::{StageCost, WAVES, WaveModel};
 use rarefy::device::stage::Stage;
 use rarefy::method::options::{Mode, RenderOptions};
@@ -35,7 +36,8 @@ pub fn run(args: &CompareArgs, interrupt: &Interrupt) -> Result<()> {
         std::fs::create_dir_all(folder).map_err(|e| Error::io(folder, e))?;
         PICTURES.iter().try_for_each(|name| outputs.picture("-o", &folder.join(name)))?;
     }
-    let (mut renderer, load_ms) = make_renderer(&args.draw.scene, &args.draw.renderer_options()?, interrupt)?;
+    let (mut renderer, load_ms) =
+        make_renderer(&args.draw.scene, args.draw.shading, &args.draw.device_options()?, interrupt)?;
     let notices = renderer.notices().len();
     let comparison = watched(&mut renderer, interrupt, |renderer| compare(renderer, &options, args.frames))?;
     let waves = if args.wave_model {

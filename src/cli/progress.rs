@@ -6,8 +6,10 @@ use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use rarefy::device::open::DeviceOptions;
 use rarefy::monitor::{Event, Monitor};
-use rarefy::render::renderer::{Renderer, RendererOptions};
+use rarefy::prepare::{PreparedScene, Shading};
+use rarefy::render::renderer::Renderer;
 use rarefy::scene::{self, builtin};
 use rarefy::{Result, Scene};
 
@@ -98,13 +100,20 @@ fn load(path: &Path, monitor: &Monitor) -> Result<Scene> {
 }
 
 /// Loads a scene and makes a renderer of it; the milliseconds are those of the loading.
-pub fn make_renderer(name: &Path, options: &RendererOptions, interrupt: &Interrupt) -> Result<(Renderer, f64)> {
+pub fn make_renderer(
+    name: &Path,
+    shading: Shading,
+    options: &DeviceOptions,
+    interrupt: &Interrupt,
+) -> Result<(Renderer, f64)> {
     let (renderer, load_ms, warnings) = with_bar(interrupt, |monitor| {
         let started = Instant::now();
         let scene = load(name, monitor)?;
         let load_ms = started.elapsed().as_secs_f64() * 1e3;
         let warnings = scene.warnings().to_vec();
-        Ok((Renderer::new(scene, options, monitor)?, load_ms, warnings))
+        let prepared = Arc::new(PreparedScene::new(&scene, shading, monitor)?);
+        drop(scene);
+        Ok((Renderer::new(prepared, options, monitor)?, load_ms, warnings))
     })?;
     warn_all(&warnings);
     warn_all(renderer.notices());

@@ -6,9 +6,9 @@ use std::path::{Path, PathBuf};
 
 use rarefy::analysis::layers::{self, Layer};
 use rarefy::analysis::report;
+use rarefy::method::counts::Keep;
 use rarefy::method::options::Mode;
 use rarefy::render::picture::write_png;
-use rarefy::render::renderer::Keep;
 use rarefy::{Error, Result};
 
 use super::args::RenderArgs;
@@ -39,7 +39,8 @@ pub fn run(args: &RenderArgs, interrupt: &Interrupt) -> Result<()> {
     }
     outputs.json(args.draw.json.as_deref())?;
 
-    let (mut renderer, load_ms) = make_renderer(&args.draw.scene, &args.draw.renderer_options()?, interrupt)?;
+    let (mut renderer, load_ms) =
+        make_renderer(&args.draw.scene, args.draw.shading, &args.draw.device_options()?, interrupt)?;
     let notices = renderer.notices().len();
     let frame = watched(&mut renderer, interrupt, |renderer| renderer.render(&options, keep))?;
     warn_all(&renderer.notices()[notices..]);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! `rarefy selftest`.
 
+use rarefy::device::open::DeviceOptions;
 use rarefy::device::stage::Stage;
-use rarefy::render::renderer::RendererOptions;
 use rarefy::selftest::full as selftest;
 use rarefy::{Error, Result};
 
@@ -22,12 +22,8 @@ pub fn run(args: &SelftestArgs) -> Result<bool> {
             Some(selftest::breaking_mutation(stage))
         }
     };
-    let options = RendererOptions {
-        device: args.device,
-        profile: profile(&args.profile)?,
-        mutation,
-        ..RendererOptions::default()
-    };
+    let options =
+        DeviceOptions { device: args.device, profile: profile(&args.profile)?, mutation, ..DeviceOptions::default() };
     let result = selftest::run(&options)?;
     say(None, &result.device);
     for check in &result.checks {

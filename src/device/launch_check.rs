@@ -2,9 +2,9 @@
 //! The last look at a launch: whether all that it reads and writes lies within its buffers.
 //!
 //! Kernels trust their parameters. A launch whose items or ranges do not fit is refused here, with the numbers, by every
-//! back end, before it can overwrite anything.
+//! executor, before it can overwrite anything.
 
-use super::backend::BufferSizes;
+use super::frame_memory::FrameSizes;
 use super::stage::{Binding, Items, Kernel, Stage};
 use crate::error::{Error, Result};
 use crate::layout::*;
@@ -18,7 +18,7 @@ pub fn check_launch(
     kernel: Kernel,
     step: &StepParams,
     frame: &FrameParams,
-    sizes: &BufferSizes,
+    sizes: &FrameSizes,
 ) -> Result<()> {
     let need = |what: &'static str, wanted: u64, have: u64| {
         if wanted <= have {
@@ -142,7 +142,7 @@ mod tests {
     }
 
     /// What the launch lacks, and how much it wants.
-    fn lacks((stage, kernel): Launch, step: StepParams, sizes: &BufferSizes) -> Option<(&'static str, u64)> {
+    fn lacks((stage, kernel): Launch, step: StepParams, sizes: &FrameSizes) -> Option<(&'static str, u64)> {
         match check_launch(stage, kernel, &step, &frame(64, 48), sizes) {
             Err(Error::LaunchBeyondBuffer { what, wanted, have, .. }) => {
                 assert!(wanted > have);
@@ -155,7 +155,7 @@ mod tests {
     #[test]
     fn each_buffer_is_guarded_to_its_last_word() {
         let pixels = 64 * 48;
-        let fits = BufferSizes::new(&frame(64, 48), true, true, 64).unwrap();
+        let fits = FrameSizes::new(&frame(64, 48), true, true, 64).unwrap();
         let step = StepParams {
             step_x: 1,
             step_y: 1,
@@ -174,7 +174,7 @@ mod tests {
             };
             assert_eq!(lacks((stage, kernel), step, &fits), None, "{label}");
         }
-        let less = |change: fn(&mut BufferSizes)| {
+        let less = |change: fn(&mut FrameSizes)| {
             let mut sizes = fits;
             change(&mut sizes);
             sizes
@@ -201,8 +201,8 @@ mod tests {
         let small = less(|sizes| sizes.masks = 4 * 64 * 48 / 32);
         assert_eq!(lacks(COUNT, first_round, &small), Some(("mask words", 480)));
         let level = StepParams { item_count: 480, sums_offset: 10, ..step };
-        assert!(lacks(SCAN, level, &BufferSizes { sums: 497, ..fits }).is_some());
-        assert!(lacks(SCAN, level, &BufferSizes { sums: 498, ..fits }).is_none());
+        assert!(lacks(SCAN, level, &FrameSizes { sums: 497, ..fits }).is_some());
+        assert!(lacks(SCAN, level, &FrameSizes { sums: 498, ..fits }).is_none());
         assert!(lacks(SWEEP, StepParams { item_count: 65, ..step }, &fits).is_some());
     }
 

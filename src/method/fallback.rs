@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Never slower than full: where the method does not pay, following frames are traced in full.
 
+use crate::method::counts::PixelCounts;
 use crate::method::options::RenderOptions;
-use crate::method::pipeline::PixelCounts;
 
 /// What a packed ray costs, in average rays: packing puts neighbours side by side, but the pixels that need rays are the
 /// hard ones.

@@ -1,130 +1,187 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! A drawn frame and what it cost.
+//! A frame: its windows are begun, drawn in full or adaptively, corrected across their borders, and collected. A frame that
+//! fits into memory is a plan of one band.
 
-use crate::device::stage::Stage;
-use crate::layout::{COUNTER_COUNT, PLANE_COUNT};
-use crate::method::pipeline::PixelCounts;
+use std::ops::Range;
 
-/// What a frame keeps beside its picture.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Keep {
-    planes: u32,
-    /// Sums of the work counters.
-    pub counters: bool,
-}
+use super::bands::{Collected, CounterSums, NewPixels, OpenChains, Plan, sum_counters};
+use super::counts::{Keep, PixelCounts};
+use super::window::{CorrectionSeeds, adaptive_window, trace_window};
+use crate::device::frame_memory::{FrameBuffer, FrameInputs};
+use crate::device::launch::Queue;
+use crate::error::{Error, Remedy, Result, Setting};
+use crate::method::options::{Correction, Mode, RenderOptions};
 
-impl Keep {
-    /// Every attribute plane and every counter, to be read after the frame.
-    pub const EVERYTHING: Keep = Keep { planes: (1 << (PLANE_COUNT + COUNTER_COUNT)) - 1, counters: true };
-    /// The sums of the work counters.
-    pub const COUNTERS: Keep = Keep { planes: 0, counters: true };
+/// Rows of the first window that repairs a band; each further one of the same chain has twice as many.
+const REPAIR_ROWS: u32 = 16;
 
-    /// These attribute planes (`PLANE_*`), to be read after the frame.
-    pub fn planes(planes: &[u32]) -> Keep {
-        Keep { planes: planes.iter().fold(0, |bits, plane| bits | 1 << plane), counters: false }
-    }
-
-    /// These counter planes (`COUNTER_*`), to be read after the frame, and the sums of all.
-    pub fn counter_planes(counters: &[u32]) -> Keep {
-        Keep { planes: counters.iter().fold(0, |bits, plane| bits | 1 << (PLANE_COUNT + plane)), counters: true }
-    }
-
-    /// Both.
-    pub fn and(self, other: Keep) -> Keep {
-        Keep { planes: self.planes | other.planes, counters: self.counters | other.counters }
-    }
-
-    /// Is the plane kept? Counter planes are numbered from [`PLANE_COUNT`] on.
-    pub(crate) fn has(self, plane: u32) -> bool {
-        self.planes >> plane & 1 != 0
-    }
-
-    /// Is any attribute plane kept?
-    pub(crate) fn attributes(self) -> bool {
-        self.planes & ((1 << PLANE_COUNT) - 1) != 0
-    }
-}
-
-/// A picture with its statistics.
-#[derive(Debug, Clone)]
-pub struct Frame {
-    /// Width in pixels.
-    pub width: u32,
-    /// Height in pixels.
-    pub height: u32,
-    /// One sRGB word a pixel, row-major from the top: red in the lowest byte, then green, blue, alpha 255.
-    pub pixels: Vec<u32>,
-    /// What it cost.
-    pub stats: FrameStats,
-}
-
-/// Rays by kind.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct RayCounts {
-    /// From the eye.
-    pub primary: u64,
-    /// Towards lights.
-    pub shadow: u64,
-    /// Off mirrors and glass, total internal reflection included.
-    pub reflection: u64,
-    /// Through glass.
-    pub refraction: u64,
-}
-
-/// Work that does not depend on the device.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct WorkCounts {
-    /// Inner kd-tree nodes visited.
-    pub traversal_steps: u64,
-    /// Ray-triangle tests.
-    pub triangle_tests: u64,
-    /// Surface points shaded, interpolated pixels and points at the ends of secondary rays included.
-    pub shaded_pixels: u64,
-}
-
-impl WorkCounts {
-    /// Traversal steps and triangle tests together: what `work_speedup` compares.
-    pub fn traversal(&self) -> u64 {
-        self.traversal_steps + self.triangle_tests
-    }
-}
-
-/// What a frame cost.
-#[derive(Debug, Clone, Default)]
-pub struct FrameStats {
-    /// All stages and the read-back, milliseconds.
-    pub frame_ms: f64,
-    /// Device time of each stage, milliseconds, in the order of [`Stage::ALL`].
-    pub stages_ms: [f64; Stage::ALL.len()],
+/// What drawing a frame leaves on the host.
+#[derive(Debug)]
+pub struct DrawnFrame {
     /// How many pixels went which way.
-    pub pixels: PixelCounts,
-    /// Rays by kind, if counters were kept.
-    pub rays: Option<RayCounts>,
-    /// Work, if counters were kept.
-    pub work: Option<WorkCounts>,
-    /// Traversal work of base, traced and corrected pixels, if counters were kept.
-    pub work_by_class: Option<[u64; 3]>,
-    /// How often each test failed, in the order of [`crate::method::options::Test::ALL`], if counters were kept.
-    pub failed_tests: Option<[u64; 7]>,
-    /// An adaptive frame was asked for and a full one drawn, because the method did not pay in frames before.
-    pub fell_back: bool,
+    pub counts: PixelCounts,
+    /// The colour of every sample, and the kept planes if the frame was more than one band; those of a frame of one band
+    /// are in the queue's frame.
+    pub collected: Collected,
+    /// Sums of the counters, if they are kept.
+    pub sums: CounterSums,
 }
 
-impl FrameStats {
-    /// The frame's time outside of the stages (launches, transfers), milliseconds.
-    pub fn other_ms(&self) -> f64 {
-        (self.frame_ms - self.stages_ms.iter().sum::<f64>()).max(0.0)
+/// Draws a frame as `plan` cuts it, in the queue's frame, whose buffers hold any window of the plan.
+///
+/// # Errors
+/// Correction by `sweeps` in more than one band, for its chains depend on the order of all rows; whatever the executor
+/// reports.
+pub fn draw_frame(
+    queue: &mut Queue,
+    inputs: &FrameInputs,
+    plan: &Plan,
+    options: &RenderOptions,
+    extent: f32,
+    keep: Keep,
+) -> Result<DrawnFrame> {
+    let kept_on_host = if plan.is_one_band() { Keep::default() } else { keep };
+    let mut frame = FrameInProgress {
+        inputs,
+        plan,
+        options,
+        extent,
+        keep,
+        counts: PixelCounts::default(),
+        collected: Collected::new(&inputs.params, kept_on_host),
+        sums: CounterSums::default(),
+    };
+    if options.mode == Mode::Full {
+        for rows in plan.bands() {
+            frame.trace_band(queue, rows)?;
+        }
+    } else {
+        frame.refuse_sweeps_in_bands()?;
+        let mut chains = OpenChains::new(&inputs.params);
+        for rows in plan.bands() {
+            frame.draw_band(queue, rows, &mut chains)?;
+        }
+        frame.close(queue, &mut chains)?;
+    }
+    Ok(DrawnFrame { counts: frame.counts, collected: frame.collected, sums: frame.sums })
+}
+
+/// A frame while its bands are drawn.
+struct FrameInProgress<'a> {
+    inputs: &'a FrameInputs,
+    plan: &'a Plan,
+    options: &'a RenderOptions,
+    extent: f32,
+    keep: Keep,
+    counts: PixelCounts,
+    collected: Collected,
+    sums: CounterSums,
+}
+
+impl FrameInProgress<'_> {
+    fn refuse_sweeps_in_bands(&self) -> Result<()> {
+        let sweeps = matches!(self.options.method.correction, Correction::Sweeps(_));
+        if !sweeps || self.plan.is_one_band() {
+            return Ok(());
+        }
+        Err(Error::LimitExceeded {
+            what: "post-correction by sweeps".into(),
+            limit: Setting::MemoryBudget.path().into(),
+            wanted: format!("all {} rows of samples in memory", self.inputs.params.height),
+            allowed: format!("{} rows", self.plan.rows()),
+            remedies: &[Remedy::ConvergedCorrection, Remedy::LargerBudget, Remedy::SmallerPicture],
+        })
     }
 
-    /// (base + traced) / all, as in the paper.
-    pub fn ray_traced_ratio(&self) -> f64 {
-        let p = &self.pixels;
-        (p.base + p.traced) as f64 / (p.base + p.traced + p.interpolated + p.corrected).max(1) as f64
+    /// Traces every pixel of a band.
+    fn trace_band(&mut self, queue: &mut Queue, rows: Range<u32>) -> Result<()> {
+        self.begin(queue, rows)?;
+        trace_window(queue, self.keep.attributes())?;
+        let counts = PixelCounts::new(queue.params(), 0, 0);
+        self.counts.add(&counts);
+        self.sums.primary += counts.base;
+        if self.keep.counters {
+            sum_counters(queue, &mut self.sums, true)?;
+        }
+        self.collected.take(queue, NewPixels::Interior)
     }
 
-    /// (base + traced + corrected) / all.
-    pub fn ray_traced_ratio_with_correction(&self) -> f64 {
-        let p = &self.pixels;
-        (p.base + p.traced + p.corrected) as f64 / (p.base + p.traced + p.interpolated + p.corrected).max(1) as f64
+    /// Draws a band for the first time.
+    fn draw_band(&mut self, queue: &mut Queue, rows: Range<u32>, chains: &mut OpenChains) -> Result<()> {
+        let fired = chains.take_pending(&rows);
+        self.begin(queue, rows.clone())?;
+        let seeds = CorrectionSeeds { settled: None, fired: &fired };
+        let (traced, corrected) = self.draw_window(queue, &rows, &seeds, chains)?;
+        self.counts.add(&PixelCounts::new(queue.params(), traced, corrected.len));
+        self.collected.take(queue, NewPixels::Interior)
     }
+
+    /// Follows the chains that cross into bands above, until none is open.
+    fn close(&mut self, queue: &mut Queue, chains: &mut OpenChains) -> Result<()> {
+        let (block, height) = (self.inputs.params.block, self.inputs.params.height);
+        let mut reach = REPAIR_ROWS;
+        while let Some(last) = chains.pending.last() {
+            // Upwards, from the last pending row.
+            let end = ((last >> 16) + 1).next_multiple_of(block).min(height);
+            let begin = end.saturating_sub(reach.clamp(block, self.plan.rows())).next_multiple_of(block);
+            self.repair_rows(queue, begin..end, chains)?;
+            let goes_on = chains.pending.last().is_some_and(|&pixel| (pixel >> 16) + 1 == begin);
+            reach = if goes_on { reach.saturating_mul(2) } else { REPAIR_ROWS };
+        }
+        Ok(())
+    }
+
+    /// Draws rows again, to trace their pending pixels and those that these fire at.
+    fn repair_rows(&mut self, queue: &mut Queue, rows: Range<u32>, chains: &mut OpenChains) -> Result<()> {
+        let fired = chains.take_pending(&rows);
+        self.begin(queue, rows.clone())?;
+        let window = *queue.params();
+        let settled = chains.fired.in_rows(window.window_begin..window.window_end);
+        let seeds = CorrectionSeeds { settled: Some(&settled), fired: &fired };
+        let (_, corrected) = self.draw_window(queue, &rows, &seeds, chains)?;
+        self.counts.corrected += corrected.len;
+        self.counts.interpolated -= corrected.len;
+        self.collected.take(queue, NewPixels::Listed(&corrected.pixels))
+    }
+
+    fn begin(&mut self, queue: &mut Queue, rows: Range<u32>) -> Result<()> {
+        queue.begin(&self.inputs.window(self.plan.window(rows)))
+    }
+
+    /// Draws the window that was begun. Returns how many pixels of its interior were traced, and which were corrected.
+    fn draw_window(
+        &mut self,
+        queue: &mut Queue,
+        interior: &Range<u32>,
+        seeds: &CorrectionSeeds,
+        chains: &mut OpenChains,
+    ) -> Result<(u64, Corrected)> {
+        let listed = adaptive_window(queue, self.options, self.extent, seeds)?;
+        let window = queue.params();
+        let base_rows = (window.window_end - window.window_begin).div_ceil(window.block);
+        self.sums.primary += u64::from(window.phase_width) * u64::from(base_rows) + listed.traced().len() as u64;
+        let (traced, corrected) = if self.plan.is_one_band() {
+            // All is interior, and no chain leaves it: nobody asks which pixels these are.
+            let corrected = Corrected { len: listed.corrected().len() as u64, pixels: Vec::new() };
+            (listed.traced().len() as u64, corrected)
+        } else {
+            let traced = queue.read(FrameBuffer::List, listed.traced())?;
+            let traced = traced.iter().filter(|&&pixel| interior.contains(&(pixel >> 16))).count() as u64;
+            let fired = queue.read(FrameBuffer::List, listed.corrected())?;
+            let pixels = chains.sort(seeds.fired.iter().copied().chain(fired), interior);
+            (traced, Corrected { len: pixels.len() as u64, pixels })
+        };
+        self.sums.primary += corrected.len;
+        if self.keep.counters {
+            sum_counters(queue, &mut self.sums, seeds.settled.is_none())?;
+        }
+        Ok((traced, corrected))
+    }
+}
+
+/// Pixels of a window's interior that had correction rays.
+struct Corrected {
+    len: u64,
+    /// Which; only in a frame of several bands.
+    pixels: Vec<u32>,
 }

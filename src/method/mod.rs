@@ -3,7 +3,9 @@
 
 pub mod bands;
 pub mod camera;
+mod correction;
+pub mod counts;
 pub mod fallback;
 pub mod frame;
 pub mod options;
-pub mod pipeline;
+pub mod window;

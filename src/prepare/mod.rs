@@ -2,4 +2,7 @@
 //! From a scene to what kernels read: the kd-tree and flat arrays.
 
 pub mod kdtree;
-pub mod scene_buffers;
+mod prepared_scene;
+
+pub(crate) use prepared_scene::flatten_lights;
+pub use prepared_scene::{PreparedScene, Shading};

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Frames drawn from a prepared scene: the renderer, pixels from samples, pictures in files.
 
-mod device;
-mod device_choice;
-mod draw;
+pub mod frame;
+mod frames;
 pub mod picture;
 pub mod renderer;
 pub mod resolve;

@@ -1,64 +1,39 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! A scene made ready on a device, and frames drawn from it.
+//! A prepared scene on a device, and frames drawn from it.
 
 use std::sync::Arc;
 use std::time::Instant;
 
-pub(crate) use super::device::open_opencl;
-
-use super::device::Device;
-use super::draw::{Job, LastFrame};
-use crate::analysis::wave_model::{self, LaunchCost};
-use crate::device::backend::{Backend, BackendInfo};
-use crate::device::hooks::progress::WatchedBackend;
-use crate::device::hooks::recording::RecordingBackend;
-use crate::device::kernels::Mutation;
-use crate::device::opencl::{CacheFolder, Faults};
-use crate::device::profiles::Profile;
-use crate::error::{Error, Remedy, Result, Setting};
-use crate::layout::PLANE_COUNT;
+use super::frame::{Frame, FrameStats};
+use super::frames::Frames;
+use super::resolve::resolve;
+use crate::device::executor::{Executor, ExecutorInfo};
+use crate::device::frame_memory::FrameHandle;
+use crate::device::hooks::progress::Progress;
+use crate::device::launch::{Hook, Queue, SceneHandle};
+use crate::device::open::{DeviceChoice, DeviceOptions, open_opencl};
+use crate::device::opencl::codes;
+use crate::device::stage::Stage;
+use crate::device::twin::executor::TwinExecutor;
+use crate::error::{Error, Result};
+use crate::layout::{FrameParams, PLANE_COUNT};
+use crate::method::bands::{FrameBudget, Plan};
+use crate::method::camera::frame_inputs;
+use crate::method::counts::Keep;
 use crate::method::fallback::Fallback;
-use crate::method::frame::Frame;
-pub use crate::method::frame::Keep;
+use crate::method::frame::draw_frame;
 use crate::method::options::{Mode, RenderOptions};
-use crate::method::pipeline;
 use crate::monitor::Monitor;
-use crate::prepare::kdtree::{BuildOptions, KdStatistics, KdTree};
-use crate::prepare::scene_buffers::{SceneBuffers, Shading};
-use crate::scene::{Scene, View};
+use crate::prepare::PreparedScene;
+use crate::prepare::kdtree::KdStatistics;
+use crate::scene::View;
+use crate::selftest::quick;
 
-/// Which device draws.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum DeviceChoice {
-    /// The first usable OpenCL device, else the CPU twin.
-    #[default]
-    Auto,
-    /// The CPU twin.
-    Cpu,
-    /// An OpenCL device: the first usable one, or the one of this index in `rarefy devices`.
-    OpenCl(Option<usize>),
-}
+/// Most device memory of a frame and its scene where nobody says otherwise, in bytes.
+pub const DEFAULT_BUDGET_BYTES: u64 = 4 << 30;
 
-/// How to make a renderer.
-#[derive(Debug, Clone, Default)]
-pub struct RendererOptions {
-    /// Which device draws.
-    pub device: DeviceChoice,
-    /// The profile whose limits the OpenCL device is held to.
-    pub profile: Option<Profile>,
-    /// Kernels that equal the CPU twin bit for bit, instead of the device's fastest.
-    pub strict: bool,
-    /// Shading rules.
-    pub shading: Shading,
-    /// Most device memory, in bytes.
-    pub memory_budget_bytes: Option<u64>,
-    /// Kernels broken on purpose, for tests and the self-test's negative control.
-    pub mutation: Option<Mutation>,
-    /// Where compiled programs and verdicts of self-tests are kept.
-    pub cache: CacheFolder,
-    /// For tests: when the OpenCL device is lost.
-    pub faults: Faults,
-}
+/// What small buffers beside the scene's arrays and the frame's may take, such as the frame's parameters and lights.
+const SMALL_BUFFERS_BYTES: u64 = 64 << 10;
 
 /// How long it took to make ready, in milliseconds.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -73,57 +48,50 @@ pub struct BuildTimes {
     pub program_ms: f64,
 }
 
-/// A scene on a device, ready to draw frames.
+/// A prepared scene on a device, ready to draw frames.
 pub struct Renderer {
-    name: String,
+    prepared: Arc<PreparedScene>,
     view: View,
-    triangle_count: usize,
-    tree_statistics: KdStatistics,
-    buffers: Arc<SceneBuffers>,
-    device: Device,
-    memory_budget_bytes: Option<u64>,
-    times: BuildTimes,
-    notices: Vec<String>,
-    last_frame: Option<LastFrame>,
+    executor: Box<dyn Executor>,
+    /// `None`: the device is lost.
+    scene: Option<SceneHandle>,
+    frames: Frames,
     fallback: Fallback,
+    memory_budget_bytes: Option<u64>,
+    upload_ms: f64,
+    notices: Vec<String>,
     monitor: Monitor,
 }
 
 impl Renderer {
-    /// Builds the kd-tree of `scene`, opens the device and uploads. `monitor` watches that, and the renderer's frames
+    /// Opens the device that `options` ask for and uploads the scene. `monitor` watches that, and the renderer's frames
     /// until [`Renderer::set_monitor`].
     ///
     /// # Errors
     /// No usable device, a scene beyond the device's limits, or a failing call. [`Error::Cancelled`].
-    pub fn new(scene: Scene, options: &RendererOptions, monitor: &Monitor) -> Result<Self> {
+    pub fn new(scene: Arc<PreparedScene>, options: &DeviceOptions, monitor: &Monitor) -> Result<Self> {
         monitor.restart();
+        let part = monitor.part("device", 0.0, 1.0);
+        part.check()?;
         let started = Instant::now();
-        let part = monitor.part("kd-tree", 0.0, 0.8);
-        let tree = KdTree::build(scene.positions(), scene.triangles(), &BuildOptions::default(), &part)?;
-        let kdtree_ms = started.elapsed().as_secs_f64() * 1e3;
-        let tree_statistics = tree.statistics();
-        let started = Instant::now();
-        let part = monitor.part("device", 0.8, 1.0);
-        let buffers = Arc::new(SceneBuffers::watched(&scene, tree, options.shading, &part)?);
-        let (name, view, triangle_count) = (scene.name().to_owned(), scene.view().clone(), scene.triangles().len());
-        drop(scene);
         let mut notices = Vec::new();
-        let device = Device::open(&buffers, options, &mut notices, &part)?;
+        let mut executor = open_executor(&scene, options, &mut notices, &part)?;
+        executor.watch(&part);
+        let uploaded = executor.upload(&scene);
+        executor.watch(&Monitor::default());
+        let uploaded = uploaded?;
         monitor.check()?;
         part.tell(1.0);
-        let upload_ms = started.elapsed().as_secs_f64() * 1e3;
         Ok(Renderer {
-            name,
-            view,
-            triangle_count,
-            tree_statistics,
-            buffers,
-            device,
-            memory_budget_bytes: options.memory_budget_bytes,
-            times: BuildTimes { kdtree_ms, upload_ms, ..BuildTimes::default() },
-            notices,
-            last_frame: None,
+            view: scene.view().clone(),
+            prepared: scene,
+            executor,
+            scene: Some(uploaded),
+            frames: Frames::default(),
             fallback: Fallback::default(),
+            memory_budget_bytes: options.memory_budget_bytes,
+            upload_ms: started.elapsed().as_secs_f64() * 1e3,
+            notices,
             monitor: monitor.clone(),
         })
     }
@@ -132,8 +100,8 @@ impl Renderer {
     /// ones full (see [`Fallback`]); the statistics say so.
     ///
     /// The renderer's monitor hears how far it is, and can cancel it. After any error the renderer is usable, and what
-    /// the frame drawn last kept ([`Renderer::plane`]) is what it was: a frame's planes are replaced when the next one
-    /// is finished, not before. (A frame's picture is the caller's.)
+    /// the frame drawn last kept ([`Renderer::plane`]) is what it was, unless the device was lost: a frame takes the
+    /// last one's place when it is finished, not before. (A frame's picture is the caller's.)
     ///
     /// A device that is lost on the way is opened again, with slices of half the time, and the frame begins again, once.
     /// [`Renderer::notices`] says so.
@@ -160,77 +128,147 @@ impl Renderer {
     /// # Errors
     /// As for [`Renderer::render`].
     pub fn render_exactly(&mut self, options: &RenderOptions, keep: Keep) -> Result<Frame> {
-        options.validate()?;
-        self.rescue_last_frame()?;
-        let job = Job {
-            options,
-            keep,
-            view: &self.view,
-            buffers: &self.buffers,
-            memory_budget_bytes: self.memory_budget_bytes,
-            monitor: &self.monitor,
-        };
-        let (frame, planes) = self.device.working(&self.monitor, &mut self.notices, |backend| job.draw(backend))?;
-        self.last_frame = Some(LastFrame { keep, planes });
+        let mut observers: [&mut dyn Hook; 0] = [];
+        let (frame, ()) = self.render_observed(options, keep, &mut observers, &mut |_, _| Ok(()))?;
         Ok(frame)
     }
 
-    /// What the last frame kept outlives the next one, should that not be finished.
-    fn rescue_last_frame(&mut self) -> Result<()> {
-        self.monitor.check()?;
-        let Some(last) = &mut self.last_frame else { return Ok(()) };
-        match last.rescue(self.device.backend(), &self.monitor) {
-            Err(Error::Cancelled) => Err(Error::Cancelled),
-            // Lost with the device, as the next frame will find out.
-            Err(error) => {
-                log::warn!("the last frame's planes are gone: {error}");
-                self.last_frame = None;
-                Ok(())
-            }
-            Ok(()) => Ok(()),
-        }
-    }
-
-    /// Draws a frame with counters and returns what each of its launches costs, lane by lane. The planes of the last
-    /// frame are gone afterwards.
+    /// Draws a frame whose launches `observers` see, and looks at what it left on the device.
     ///
     /// # Errors
-    /// As for [`Renderer::render`]; a frame that does not fit into memory at once.
-    pub fn launch_costs(&mut self, options: &RenderOptions) -> Result<Vec<LaunchCost>> {
+    /// As for [`Renderer::render`]; whatever an observer or `inspect` reports.
+    #[doc(hidden)]
+    pub fn render_observed<T>(
+        &mut self,
+        options: &RenderOptions,
+        keep: Keep,
+        observers: &mut [&mut dyn Hook],
+        inspect: &mut dyn FnMut(&mut dyn Executor, &FrameHandle) -> Result<T>,
+    ) -> Result<(Frame, T)> {
         options.validate()?;
         self.monitor.check()?;
-        self.last_frame = None;
-        let job = Job {
-            options: &RenderOptions { band_rows: None, ..options.clone() },
-            keep: Keep::COUNTERS,
-            view: &self.view,
-            buffers: &self.buffers,
-            memory_budget_bytes: self.memory_budget_bytes,
-            monitor: &self.monitor,
+        if self.executor.is_lost() || self.scene.is_none() {
+            self.reopen()?;
+        }
+        let lost = match self.draw(options, keep, observers, inspect) {
+            Err(_) if self.monitor.check().is_err() => return Err(Error::Cancelled),
+            Err(error) if codes::is_loss(&error) => error,
+            done => return done,
         };
-        self.device.working(&self.monitor, &mut self.notices, |backend| {
-            let params = job.params();
-            let plan = job.plan(backend, &params)?;
-            if !plan.is_one_window() {
-                return Err(Error::LimitExceeded {
-                    what: "the wave model".into(),
-                    limit: Setting::MemoryBudget.path().into(),
-                    wanted: format!("all {} rows of samples in memory", params.height),
-                    allowed: format!("{} rows", plan.rows()),
-                    remedies: &[Remedy::SmallerPicture, Remedy::LargerBudget],
-                });
-            }
-            let backend = &mut WatchedBackend::new(backend, &self.monitor);
-            backend.begin(&params, &plan.sizes)?;
-            let mut recording = RecordingBackend::new(backend);
-            if options.mode == Mode::Full {
-                pipeline::full_frame(&mut recording, &params, false)?;
-            } else {
-                pipeline::adaptive_frame(&mut recording, &params, options, self.view.extent)?;
-            }
-            let launches = recording.launches;
-            wave_model::launch_costs(backend, &params, &launches)
+        let device = self.executor.info().describe();
+        log::warn!("{device}: {lost}");
+        let changed = self.reopen()?;
+        self.notices.push(format!("{device} was lost ({lost}) and opened again; {changed}"));
+        self.draw(options, keep, observers, inspect)
+            .map_err(|error| if codes::is_loss(&error) { self.lost(&error) } else { error })
+    }
+
+    /// Opens the device anew after it was lost, with the scene; everything else on it is gone.
+    fn reopen(&mut self) -> Result<String> {
+        self.frames.forget_device();
+        self.scene = None;
+        self.executor.watch(&self.monitor);
+        let reopened = self.executor.reopen().and_then(|changed| {
+            self.scene = Some(self.executor.upload(&self.prepared)?);
+            Ok(changed)
+        });
+        self.executor.watch(&Monitor::default());
+        reopened.map_err(|error| match error {
+            Error::Cancelled => error,
+            error => self.lost(&error),
         })
+    }
+
+    fn lost(&mut self, cause: &Error) -> Error {
+        self.frames.forget_device();
+        self.scene = None;
+        Error::DeviceLost { device: self.executor.info().describe(), cause: cause.to_string() }
+    }
+
+    fn draw<T>(
+        &mut self,
+        options: &RenderOptions,
+        keep: Keep,
+        observers: &mut [&mut dyn Hook],
+        inspect: &mut dyn FnMut(&mut dyn Executor, &FrameHandle) -> Result<T>,
+    ) -> Result<(Frame, T)> {
+        let Some(scene) = self.scene.clone() else { return Err(Error::ForeignHandle { what: "scene" }) };
+        let block = if options.mode == Mode::Full { 1 } else { options.method.block };
+        let (width, height) = options.sample_size();
+        let inputs = frame_inputs(&self.view, &self.prepared, width, height, block, options.depth);
+        let budget = self.frame_budget(options, keep);
+        let plan = Plan::new(&inputs.params, &budget, options.band_rows)?;
+        self.executor.take_timings()?;
+
+        let started = Instant::now();
+        let mut progress = Progress::new(&self.monitor);
+        self.executor.watch(&self.monitor.part("frame", 0.0, 1.0));
+        let executor = self.executor.as_mut();
+        let mut frame = match self.frames.take(
+            executor,
+            &inputs,
+            &plan.sizes,
+            budget.total_bytes.saturating_sub(budget.scene_bytes),
+        ) {
+            Ok(frame) => frame,
+            Err(error) => {
+                executor.watch(&Monitor::default());
+                return Err(error);
+            }
+        };
+        let mut hooks: Vec<&mut dyn Hook> = vec![&mut progress];
+        for observer in observers.iter_mut() {
+            hooks.push(&mut **observer);
+        }
+        let mut queue = Queue::new(executor, &scene, &mut frame, &mut hooks);
+        let drawn = draw_frame(&mut queue, &inputs, &plan, options, self.view.extent, keep).and_then(|mut drawn| {
+            let samples = std::mem::take(&mut drawn.collected.colors);
+            let pixels = match options.samples {
+                1 => samples,
+                per_axis => resolve(&samples, options.width, options.height, per_axis, &self.monitor)?,
+            };
+            let frame_ms = started.elapsed().as_secs_f64() * 1e3;
+            let mut stages_ms = [0.0; Stage::ALL.len()];
+            for (stage, ms) in queue.take_timings()? {
+                stages_ms[stage as usize] += ms;
+            }
+            self.monitor.check()?;
+            Ok((drawn, pixels, frame_ms, stages_ms))
+        });
+        let inspected = drawn.and_then(|drawn| Ok((drawn, inspect(executor, &frame)?)));
+        executor.watch(&Monitor::default());
+        let ((drawn, pixels, frame_ms, stages_ms), seen) = match inspected {
+            Ok(done) => done,
+            Err(error) => {
+                self.frames.unfinished(frame);
+                return Err(error);
+            }
+        };
+        progress.finished();
+        let mut stats = FrameStats { frame_ms, stages_ms, pixels: drawn.counts, ..FrameStats::default() };
+        if keep.counters {
+            (stats.rays, stats.work) = (Some(drawn.sums.rays()), Some(drawn.sums.work()));
+            stats.work_by_class = Some(drawn.sums.work_by_class);
+            stats.failed_tests = (options.mode == Mode::Adaptive).then_some(drawn.sums.failed_tests);
+        }
+        let stays_on_device = plan.is_one_band() && keep.any_plane();
+        self.frames.finished(frame, keep, (!stays_on_device).then_some(drawn.collected));
+        Ok((Frame { width: options.width, height: options.height, pixels, stats }, seen))
+    }
+
+    /// What the device, its profile and the memory budget leave for a frame's buffers, and what these must hold.
+    fn frame_budget(&self, options: &RenderOptions, keep: Keep) -> FrameBudget {
+        let limits = self.executor.memory_limits();
+        let scene_bytes = self.prepared.bytes() + SMALL_BUFFERS_BYTES;
+        let budget = self.memory_budget_bytes.unwrap_or(DEFAULT_BUDGET_BYTES).min(usize::MAX as u64 / 2);
+        FrameBudget {
+            total_bytes: budget.min(limits.total_bytes),
+            allocation_bytes: limits.allocation_bytes,
+            scene_bytes,
+            attributes: keep.attributes() || options.mode == Mode::Adaptive,
+            counters: keep.counters,
+            scan_group: self.executor.scan_group(),
+        }
     }
 
     /// An attribute plane (`PLANE_*`) of the frame that was finished last, row-major, one word a sample. Reading cannot be
@@ -252,16 +290,18 @@ impl Renderer {
     }
 
     fn kept_plane(&mut self, plane: u32, what: &'static str) -> Result<Vec<u32>> {
-        let words = match &self.last_frame {
-            Some(last) => last.plane(self.device.backend(), plane)?,
-            None => None,
-        };
+        let words = self.frames.plane(self.executor.as_mut(), plane)?;
         words.ok_or(Error::MissingPlane { plane: what })
+    }
+
+    /// The scene that frames are drawn from.
+    pub fn scene(&self) -> &Arc<PreparedScene> {
+        &self.prepared
     }
 
     /// The scene's name.
     pub fn name(&self) -> &str {
-        &self.name
+        self.prepared.name()
     }
 
     /// The view that frames are drawn from.
@@ -269,33 +309,39 @@ impl Renderer {
         &self.view
     }
 
-    /// Moves the camera, lights or environment; the number of lights must stay.
-    pub fn set_view(&mut self, view: View) {
+    /// Moves the camera, changes lights (as many as a scene may have) or environment, for the frames that follow.
+    ///
+    /// # Errors
+    /// As for [`View::validate`]; the view then stays.
+    pub fn set_view(&mut self, view: View) -> Result<()> {
+        view.validate()?;
         self.view = view;
+        Ok(())
     }
 
     /// Number of triangles.
     pub fn triangle_count(&self) -> usize {
-        self.triangle_count
+        self.prepared.triangle_count()
     }
 
     /// Statistics of the kd-tree.
-    pub fn tree_statistics(&self) -> &KdStatistics {
-        &self.tree_statistics
+    pub fn tree_statistics(&self) -> KdStatistics {
+        self.prepared.tree().statistics()
     }
 
     /// What draws.
-    pub fn info(&mut self) -> BackendInfo {
-        self.device.backend().info()
+    pub fn info(&self) -> ExecutorInfo {
+        self.executor.info()
     }
 
     /// How long it took to make ready; program builds so far included, `load_ms` left 0.
     pub fn build_times(&self) -> BuildTimes {
-        let program_ms = match &self.device {
-            Device::Twin(_) => 0.0,
-            Device::OpenCl(device) => device.program_ms(),
-        };
-        BuildTimes { program_ms, ..self.times }
+        BuildTimes {
+            load_ms: 0.0,
+            kdtree_ms: self.prepared.kdtree_ms(),
+            upload_ms: self.upload_ms,
+            program_ms: self.executor.program_ms(),
+        }
     }
 
     /// Who watches the next frames: a cancelled monitor must be replaced before there can be any.
@@ -314,15 +360,50 @@ impl Renderer {
     }
 
     /// Most bytes of device memory in use so far.
-    pub fn peak_device_bytes(&mut self) -> u64 {
-        self.device.backend().peak_bytes()
+    pub fn peak_device_bytes(&self) -> u64 {
+        self.executor.peak_bytes()
     }
 
-    /// The back end: tests run single stages with it.
-    pub fn backend(&mut self) -> &mut dyn Backend {
-        self.device.backend()
+    /// The parameters of the frame drawn last and `work` on a queue of its launches, if its planes are on the device: for
+    /// tests that launch single kernels.
+    #[doc(hidden)]
+    pub fn on_last_frame<T>(&mut self, work: impl FnOnce(&FrameParams, &mut Queue) -> T) -> Option<T> {
+        let (scene, frame) = (self.scene.as_ref()?, self.frames.last_mut()?);
+        let params = *frame.params();
+        let mut hooks: [&mut dyn Hook; 0] = [];
+        let mut queue = Queue::new(self.executor.as_mut(), scene, frame, &mut hooks);
+        Some(work(&params, &mut queue))
     }
 }
 
-/// Most device memory of a frame and its scene where nobody says otherwise, in bytes.
-pub const DEFAULT_BUDGET_BYTES: u64 = 4 << 30;
+/// The executor that `options` ask for, tested if nobody has tested it yet. What a user should know about the choice goes
+/// to `notices`.
+fn open_executor(
+    scene: &PreparedScene,
+    options: &DeviceOptions,
+    notices: &mut Vec<String>,
+    monitor: &Monitor,
+) -> Result<Box<dyn Executor>> {
+    let tested = || {
+        let mut opened = open_opencl(options)?;
+        if let Some(device) = &mut opened {
+            device.watch(monitor);
+            quick::check(device, scene.shading(), options.profile.as_ref())?;
+        }
+        Ok(opened)
+    };
+    match tested() {
+        // A compiler that Ctrl-C ended, for one, is no reason to draw elsewhere.
+        Err(_) if monitor.check().is_err() => Err(Error::Cancelled),
+        Ok(Some(device)) => Ok(Box::new(device)),
+        Ok(None) => Ok(Box::new(TwinExecutor::default())),
+        // No device, or one that a quick self-test found wanting.
+        Err(error @ (Error::NoOpenCl { .. } | Error::SelfTest { .. } | Error::KernelBuild { .. }))
+            if options.device == DeviceChoice::Auto =>
+        {
+            notices.push(format!("drawing on the CPU twin: {error}"));
+            Ok(Box::new(TwinExecutor::default()))
+        }
+        Err(error) => Err(error),
+    }
+}

@@ -7,19 +7,17 @@
 
 use std::sync::Arc;
 
-use crate::device::backend::{Backend, FrameBuffer};
-use crate::device::hooks::parity::{KernelParity, ParityBackend};
+use crate::device::executor::Executor;
+use crate::device::hooks::parity::KernelParity;
+use crate::device::hooks::parity::Parity;
 use crate::device::kernels::Mutation;
+use crate::device::open::{DeviceOptions, open_opencl};
 use crate::device::stage::Stage;
-use crate::device::twin::executor::TwinBackend;
+use crate::device::twin::executor::TwinExecutor;
 use crate::error::Result;
 use crate::method::options::{Method, RenderOptions, Spread};
-use crate::monitor::Monitor;
-use crate::prepare::scene_buffers::{SceneBuffers, Shading};
-use crate::render::renderer::{DeviceChoice, RendererOptions};
-use crate::scene::Scene;
-use crate::scene::builtin;
-use crate::selftest::quick::{check_layout, check_parity, run_frame, scene_buffers};
+use crate::prepare::{PreparedScene, Shading};
+use crate::selftest::quick::{check_layout, check_parity, draw_test_frame, prepared};
 
 pub use crate::selftest::quick::{Check, SelfTest};
 
@@ -58,27 +56,17 @@ pub fn breaking_mutation(stage: Stage) -> Mutation {
 ///
 /// # Errors
 /// No device, a kernel that does not build, or a failing call; wrong results are not errors but failed checks.
-pub fn run(options: &RendererOptions) -> Result<SelfTest> {
-    let scene = builtin::to_scene(SCENE)?;
-    let buffers = scene_buffers(&scene, Shading::Full)?;
-    let twin_check = check_twin(&scene, &buffers)?;
-    let opened = match options.device {
-        DeviceChoice::Cpu => None,
-        _ => {
-            let options = RendererOptions { strict: true, ..options.clone() };
-            crate::render::renderer::open_opencl(&buffers, &options, &Monitor::default())?
-        }
+pub fn run(options: &DeviceOptions) -> Result<SelfTest> {
+    let scene = prepared(SCENE, Shading::Full)?;
+    let twin_check = check_twin(&scene)?;
+    let Some(mut device) = open_opencl(&DeviceOptions { strict: true, ..options.clone() })? else {
+        return Ok(SelfTest { device: TwinExecutor::default().info().describe(), checks: vec![twin_check] });
     };
-    let Some(mut device) = opened else {
-        let info = TwinBackend::new(buffers).info();
-        return Ok(SelfTest { device: format!("{}, {}", info.name, info.version), checks: vec![twin_check] });
-    };
-    let info = device.info();
     let mut checks = vec![twin_check, check_layout(&device.probe()?)];
-    for result in stage_parity(&scene, &buffers, &mut device)? {
+    for result in stage_parity(&scene, &mut device)? {
         checks.push(check_parity(&result));
     }
-    Ok(SelfTest { device: format!("{}, {}", info.name, info.version), checks })
+    Ok(SelfTest { device: device.info().describe(), checks })
 }
 
 /// The options of the frames that the self-test draws: together they launch every kernel.
@@ -98,20 +86,20 @@ fn frames() -> [RenderOptions; 3] {
 ///
 /// # Errors
 /// A limit of the device, a kernel that does not build, or a failing call.
-pub fn stage_parity(scene: &Scene, buffers: &Arc<SceneBuffers>, device: &mut dyn Backend) -> Result<Vec<KernelParity>> {
-    let mut parity = ParityBackend::new(TwinBackend::new(Arc::clone(buffers)), device);
+pub fn stage_parity(scene: &Arc<PreparedScene>, device: &mut dyn Executor) -> Result<Vec<KernelParity>> {
+    let mut twin = TwinExecutor::imitating(device);
+    let mut parity = Parity::new(device, scene)?;
     for options in frames() {
-        run_frame(&mut parity, scene, buffers, &options, true)?;
+        draw_test_frame(&mut twin, scene, &options, true, &mut [&mut parity])?;
     }
     Ok(parity.results)
 }
 
-fn check_twin(scene: &Scene, buffers: &Arc<SceneBuffers>) -> Result<Check> {
-    let mut twin = TwinBackend::new(Arc::clone(buffers));
+fn check_twin(scene: &Arc<PreparedScene>) -> Result<Check> {
+    let mut twin = TwinExecutor::default();
     let mut checksum = 0xcbf2_9ce4_8422_2325u64;
     for options in frames() {
-        run_frame(&mut twin, scene, buffers, &options, false)?;
-        for word in twin.read(FrameBuffer::Color, 0..(WIDTH * HEIGHT) as usize)? {
+        for word in draw_test_frame(&mut twin, scene, &options, false, &mut [])? {
             for byte in word.to_le_bytes() {
                 checksum = (checksum ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
             }
@@ -129,10 +117,11 @@ fn check_twin(scene: &Scene, buffers: &Arc<SceneBuffers>) -> Result<Check> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::device::open::DeviceChoice;
 
     #[test]
     fn the_twin_gives_the_known_answer() {
-        let options = RendererOptions { device: DeviceChoice::Cpu, ..RendererOptions::default() };
+        let options = DeviceOptions { device: DeviceChoice::Cpu, ..DeviceOptions::default() };
         let result = run(&options).unwrap();
         let remedy =
             "if the method, its defaults or the scene changed on purpose, put the first number into TWIN_CHECKSUM";

@@ -8,20 +8,21 @@
 
 use std::sync::Arc;
 
-use crate::device::backend::{Backend, BufferSizes};
-use crate::device::hooks::parity::{KernelParity, ParityBackend};
-use crate::device::opencl::executor::OpenClBackend;
+use crate::device::executor::Executor;
+use crate::device::frame_memory::{FrameBuffer, FrameSizes};
+use crate::device::hooks::parity::{KernelParity, Parity};
+use crate::device::launch::{Hook, Queue};
+use crate::device::opencl::executor::OpenClExecutor;
 use crate::device::profiles::Profile;
 use crate::device::stage::{Kernel, LAUNCHES};
-use crate::device::twin::executor::TwinBackend;
+use crate::device::twin::executor::TwinExecutor;
 use crate::error::{Error, Result};
 use crate::layout;
-use crate::method::camera::frame_params;
+use crate::method::camera::frame_inputs;
 use crate::method::options::RenderOptions;
-use crate::method::pipeline;
-use crate::prepare::kdtree::{BuildOptions, KdTree};
-use crate::prepare::scene_buffers::{SceneBuffers, Shading};
-use crate::scene::Scene;
+use crate::method::window::{CorrectionSeeds, adaptive_window};
+use crate::monitor::Monitor;
+use crate::prepare::{PreparedScene, Shading};
 use crate::scene::builtin;
 
 /// Few triangles, but mirror, glass, textures and shadows among them.
@@ -37,7 +38,7 @@ const WRONG_LIMIT: f64 = 0.005;
 /// The result of one check.
 #[derive(Debug, Clone)]
 pub struct Check {
-    /// What was checked: a stage and its kernel, or `layout`, `twin`.
+    /// What was checked: a kernel's name, or `layout`, `twin`.
     pub name: String,
     /// Whether it passed.
     pub passed: bool,
@@ -89,15 +90,15 @@ pub enum Known {
 ///
 /// # Errors
 /// [`Error::SelfTest`] with the driver's version and the stage that failed; [`Error::KernelBuild`].
-pub fn check(device: &mut OpenClBackend, profile: Option<&Profile>) -> Result<Known> {
+pub fn check(device: &mut OpenClExecutor, shading: Shading, profile: Option<&Profile>) -> Result<Known> {
     let profile = profile.map_or(String::new(), |profile| profile.to_json().to_string());
-    let texts = device.program_texts();
+    let texts = device.program_texts(shading);
     let about = [texts.as_str(), &profile];
     let kept = device.door().verdict(&about);
-    if let Some(verdict) = kept.as_deref().and_then(|text| read_verdict(&describe(device), text)) {
+    if let Some(verdict) = kept.as_deref().and_then(|text| read_verdict(&device.info().describe(), text)) {
         return verdict.map(|()| Known::FromCache);
     }
-    let outcome = test(device);
+    let outcome = test(device, shading);
     let test = match outcome {
         Ok(test) => test,
         Err(Error::LimitExceeded { what, limit, .. }) => {
@@ -106,7 +107,7 @@ pub fn check(device: &mut OpenClBackend, profile: Option<&Profile>) -> Result<Kn
         }
         Err(error @ Error::OpenCl { .. }) => {
             return Err(Error::SelfTest {
-                device: describe(device),
+                device: device.info().describe(),
                 stage: stage_in(&error.to_string()),
                 message: error.to_string(),
             });
@@ -117,11 +118,6 @@ pub fn check(device: &mut OpenClBackend, profile: Option<&Profile>) -> Result<Kn
     let verdict = failed.map_or(PASSED.into(), |check| format!("{FAILED}\n{}\n{}", check.name, check.detail));
     device.door().keep_verdict(&about, &verdict);
     test.require().map(|()| Known::Tested)
-}
-
-fn describe(device: &OpenClBackend) -> String {
-    let info = device.info();
-    format!("{}, {}", info.name, info.version)
 }
 
 /// What a kept verdict says; `None` if it is none.
@@ -140,40 +136,42 @@ fn stage_in(message: &str) -> String {
     known.map_or("calls", |(.., label)| label).into()
 }
 
-fn test(device: &mut OpenClBackend) -> Result<SelfTest> {
-    let scene = builtin::to_scene(SCENE)?;
-    let buffers = scene_buffers(&scene, device.shading())?;
+fn test(device: &mut OpenClExecutor, shading: Shading) -> Result<SelfTest> {
+    let scene = prepared(SCENE, shading)?;
     let options = RenderOptions { width: WIDTH, height: HEIGHT, ..RenderOptions::default() };
-    let checks = device.with_scene(&buffers, |device| {
-        let mut checks = vec![check_layout(&device.probe()?)];
-        let mut parity = ParityBackend::new(TwinBackend::new(Arc::clone(&buffers)), device).as_the_device_likes();
-        run_frame(&mut parity, &scene, &buffers, &options, false)?;
-        checks.extend(parity.results.iter().map(check_parity));
-        Ok(checks)
-    })?;
-    Ok(SelfTest { device: describe(device), checks })
+    let mut checks = vec![check_layout(&device.probe()?)];
+    let mut twin = TwinExecutor::imitating(device).preferring_few_launches(device.prefers_few_launches());
+    let mut parity = Parity::new(device, &scene)?;
+    draw_test_frame(&mut twin, &scene, &options, false, &mut [&mut parity])?;
+    checks.extend(parity.results.iter().map(check_parity));
+    drop(parity);
+    device.door().start_afresh()?;
+    Ok(SelfTest { device: device.info().describe(), checks })
 }
 
-pub(crate) fn scene_buffers(scene: &Scene, shading: Shading) -> Result<Arc<SceneBuffers>> {
-    let tree =
-        KdTree::build(scene.positions(), scene.triangles(), &BuildOptions::default(), &crate::Monitor::default())?;
-    Ok(Arc::new(SceneBuffers::new(scene, tree, shading)?))
+/// A built-in scene, prepared.
+pub(crate) fn prepared(name: &str, shading: Shading) -> Result<Arc<PreparedScene>> {
+    Ok(Arc::new(PreparedScene::new(&builtin::to_scene(name)?, shading, &Monitor::default())?))
 }
 
-pub(crate) fn run_frame(
-    backend: &mut dyn Backend,
-    scene: &Scene,
-    buffers: &SceneBuffers,
+/// Draws an adaptive frame on `executor` and returns its picture.
+pub(crate) fn draw_test_frame(
+    executor: &mut dyn Executor,
+    scene: &Arc<PreparedScene>,
     options: &RenderOptions,
     counters: bool,
-) -> Result<()> {
-    let params =
-        frame_params(scene.view(), buffers, options.width, options.height, options.method.block, options.depth);
-    let sizes = BufferSizes::new(&params, true, counters, backend.scan_group());
+    hooks: &mut [&mut dyn Hook],
+) -> Result<Vec<u32>> {
+    let RenderOptions { width, height, depth, .. } = *options;
+    let inputs = frame_inputs(scene.view(), scene, width, height, options.method.block, depth);
+    let sizes = FrameSizes::new(&inputs.params, true, counters, executor.scan_group());
     let sizes = sizes.ok_or_else(|| Error::argument("size", "a self-test frame does not fit the address space"))?;
-    backend.begin(&params, &sizes)?;
-    pipeline::adaptive_frame(backend, &params, options, scene.view().extent)?;
-    Ok(())
+    let uploaded = executor.upload(scene)?;
+    let mut frame = executor.allocate(&inputs, &sizes)?;
+    let mut queue = Queue::new(executor, &uploaded, &mut frame, hooks);
+    queue.begin(&inputs)?;
+    adaptive_window(&mut queue, options, scene.view().extent, &CorrectionSeeds::default())?;
+    queue.read(FrameBuffer::Color, 0..sizes.color)
 }
 
 pub(crate) fn check_layout(probe: &[u32]) -> Check {
@@ -209,12 +207,11 @@ mod tests {
 
     #[test]
     fn the_tiny_frame_launches_every_kernel_of_a_usual_frame() {
-        let scene = builtin::to_scene(SCENE).unwrap();
-        let buffers = scene_buffers(&scene, Shading::Full).unwrap();
+        let scene = prepared(SCENE, Shading::Full).unwrap();
         let options = RenderOptions { width: WIDTH, height: HEIGHT, ..RenderOptions::default() };
-        let mut other = TwinBackend::new(Arc::clone(&buffers));
-        let mut parity = ParityBackend::new(TwinBackend::new(Arc::clone(&buffers)), &mut other);
-        run_frame(&mut parity, &scene, &buffers, &options, false).unwrap();
+        let mut other = TwinExecutor::default();
+        let mut parity = Parity::new(&mut other, &scene).unwrap();
+        draw_test_frame(&mut TwinExecutor::default(), &scene, &options, false, &mut [&mut parity]).unwrap();
         let launched: Vec<_> = parity.results.iter().map(|result| (result.stage, result.kernel)).collect();
         for (stage, kernel, label) in LAUNCHES.into_iter().filter(|(_, kernel, _)| *kernel != Kernel::CorrectSweep) {
             assert!(launched.contains(&(stage, kernel)), "{label}");

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! A back end that passes everything on and remembers the launches.
+//! A hook that remembers the launches of a frame.
 
-use crate::device::backend::{Backend, BackendInfo, BufferSizes, FrameBuffer, MemoryLimits};
+use crate::device::executor::Executor;
+use crate::device::frame_memory::FrameBuffer;
+use crate::device::launch::{Hook, Launch};
 use crate::device::stage::{Kernel, Stage};
 use crate::error::Result;
-use crate::layout::{FrameParams, StepParams, TAIL_SUM_ENDS, TAIL_SUM_ROUNDS, Traversal};
-use crate::monitor::Monitor;
+use crate::layout::{StepParams, TAIL_SUM_ENDS, TAIL_SUM_ROUNDS};
 
 /// A launch that was recorded.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Recorded {
+pub struct RecordedLaunch {
     /// The stage.
     pub stage: Stage,
     /// The kernel.
@@ -20,83 +21,28 @@ pub struct Recorded {
     pub round_ends: Vec<u32>,
 }
 
-/// Records the launches of a frame.
-pub struct RecordingBackend<'a> {
-    inner: &'a mut dyn Backend,
-    /// The launches so far, in order.
-    pub launches: Vec<Recorded>,
+/// Records launches, in order.
+#[derive(Debug, Default)]
+pub struct Recording {
+    /// The launches so far.
+    pub launches: Vec<RecordedLaunch>,
 }
 
-impl<'a> RecordingBackend<'a> {
-    /// Passes calls on to `inner`.
-    pub fn new(inner: &'a mut dyn Backend) -> Self {
-        RecordingBackend { inner, launches: Vec::new() }
-    }
-}
-
-impl Backend for RecordingBackend<'_> {
-    fn info(&self) -> BackendInfo {
-        self.inner.info()
-    }
-
-    fn scan_group(&self) -> u32 {
-        self.inner.scan_group()
-    }
-
-    fn memory_limits(&self) -> MemoryLimits {
-        self.inner.memory_limits()
-    }
-
-    /// As on a GPU, whose launches are what recordings are for, whatever records them.
-    fn prefers_few_launches(&self) -> bool {
+impl Hook for Recording {
+    /// Launches on a GPU are what recordings are for, whatever records them.
+    fn wants_few_launches(&self) -> bool {
         true
     }
 
-    fn traversal(&self) -> Traversal {
-        self.inner.traversal()
-    }
-
-    fn begin(&mut self, frame: &FrameParams, sizes: &BufferSizes) -> Result<()> {
-        self.inner.begin(frame, sizes)
-    }
-
-    fn run(&mut self, stage: Stage, kernel: Kernel, step: &StepParams) -> Result<()> {
-        self.inner.run(stage, kernel, step)?;
+    fn after(&mut self, executor: &mut dyn Executor, launch: &Launch) -> Result<()> {
         let mut round_ends = Vec::new();
-        if kernel == Kernel::CorrectTail {
-            let rounds = self.inner.read_sum(TAIL_SUM_ROUNDS)? as usize;
-            let ends = TAIL_SUM_ENDS as usize;
-            round_ends = self.inner.read(FrameBuffer::Sums, ends..ends + rounds)?;
+        if launch.kernel == Kernel::CorrectTail {
+            let (at, ends) = (TAIL_SUM_ROUNDS as usize, TAIL_SUM_ENDS as usize);
+            let rounds = executor.read(launch.frame, FrameBuffer::Sums, at..at + 1)?[0] as usize;
+            round_ends = executor.read(launch.frame, FrameBuffer::Sums, ends..ends + rounds)?;
         }
-        self.launches.push(Recorded { stage, kernel, step: *step, round_ends });
+        let Launch { stage, kernel, step, .. } = *launch;
+        self.launches.push(RecordedLaunch { stage, kernel, step: *step, round_ends });
         Ok(())
-    }
-
-    fn read_sum(&mut self, at: u32) -> Result<u32> {
-        self.inner.read_sum(at)
-    }
-
-    fn read(&mut self, buffer: FrameBuffer, range: std::ops::Range<usize>) -> Result<Vec<u32>> {
-        self.inner.read(buffer, range)
-    }
-
-    fn write(&mut self, buffer: FrameBuffer, words: &[u32]) -> Result<()> {
-        self.inner.write(buffer, words)
-    }
-
-    fn take_timings(&mut self) -> Result<Vec<(Stage, f64)>> {
-        self.inner.take_timings()
-    }
-
-    fn watch(&mut self, monitor: &Monitor) {
-        self.inner.watch(monitor);
-    }
-
-    fn monitor(&self) -> &Monitor {
-        self.inner.monitor()
-    }
-
-    fn peak_bytes(&self) -> u64 {
-        self.inner.peak_bytes()
     }
 }

@@ -1,19 +1,25 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! An OpenCL device as a back end: programs built on first use, and one buffer per binding.
+//! An OpenCL device as an executor: programs built on first use, one buffer per binding.
 
 use std::collections::HashMap;
+use std::ops::Range;
 use std::sync::Arc;
 
-use crate::device::backend::{Backend, BackendInfo, BufferSizes, FrameBuffer, MemoryLimits};
+use crate::device::executor::{Executor, ExecutorInfo, MemoryLimits};
+use crate::device::frame_memory::{FrameBuffer, FrameHandle, FrameInputs, FrameSizes};
 use crate::device::kernels::{self, Mutation};
+use crate::device::launch::{Launch, SceneHandle};
 use crate::device::launch_check::check_launch;
-use crate::device::opencl::{AnyBuffer, Arg, Buffer, Door, Kernel as DeviceKernel, Launch, Limits, ProgramSource};
+use crate::device::opencl::{
+    AnyBuffer, Arg, Buffer, DeviceLaunch, Door, Kernel as DeviceKernel, Limits, ProgramSource,
+};
 use crate::device::profiles::Choices;
 use crate::device::stage::{Binding, Items, Kernel, LAUNCHES, Program, Stage};
 use crate::error::Result;
-use crate::layout::{self, BuildFlavour, FrameParams, StepParams, Traversal};
+use crate::layout::{self, BuildFlavour, FrameParams, Traversal};
 use crate::monitor::Monitor;
-use crate::prepare::scene_buffers::{SceneBuffers, Shading};
+use crate::prepare::{PreparedScene, Shading};
+use crate::scene::MAX_LIGHTS;
 
 /// Work-items of a scan's work-group, where the device allows as many.
 const SCAN_GROUP: usize = 256;
@@ -21,26 +27,22 @@ const SCAN_GROUP: usize = 256;
 const LIST_GROUP: usize = 64;
 
 /// Runs kernels on an OpenCL device.
-pub struct OpenClBackend {
+pub struct OpenClExecutor {
     door: Door,
-    host_scene: Arc<SceneBuffers>,
-    /// `None`: the device is lost.
-    scene: Option<SceneOnDevice>,
-    buffers: Option<(BufferSizes, FrameOnDevice)>,
+    is_lost: bool,
     kernels: HashMap<(Kernel, BuildFlavour), DeviceKernel>,
-    flavour: BuildFlavour,
+    strict: bool,
+    traversal: Traversal,
     mutation: Option<Mutation>,
     scan_group: u32,
     program_ms: f64,
-    frame: FrameParams,
     /// On doors before this one.
     peak_before: u64,
     monitor: Monitor,
 }
 
+/// A scene in the device's memory.
 struct SceneOnDevice {
-    frame: Buffer<FrameParams>,
-    lights: Buffer<layout::Light>,
     nodes: Buffer<crate::prepare::kdtree::KdNode>,
     leaf_triangles: Buffer<u32>,
     triangles: Buffer<layout::Triangle>,
@@ -53,10 +55,8 @@ struct SceneOnDevice {
 }
 
 impl SceneOnDevice {
-    fn upload(door: &Door, scene: &SceneBuffers) -> Result<Self> {
+    fn upload(door: &Door, scene: &PreparedScene) -> Result<Self> {
         Ok(SceneOnDevice {
-            frame: door.buffer("frame", 1)?,
-            lights: door.buffer_from("lights", &scene.lights)?,
             nodes: door.buffer_from("nodes", &scene.tree.nodes)?,
             leaf_triangles: door.buffer_from("leaf_triangles", &scene.tree.leaf_triangles)?,
             triangles: door.buffer_from("triangles", &scene.triangles)?,
@@ -70,7 +70,10 @@ impl SceneOnDevice {
     }
 }
 
+/// A frame in the device's memory.
 struct FrameOnDevice {
+    params: Buffer<FrameParams>,
+    lights: Buffer<layout::Light>,
     attributes: Buffer<u32>,
     counters: Buffer<u32>,
     color: Buffer<u32>,
@@ -80,6 +83,24 @@ struct FrameOnDevice {
 }
 
 impl FrameOnDevice {
+    fn allocate(door: &Door, sizes: &FrameSizes) -> Result<Self> {
+        Ok(FrameOnDevice {
+            params: door.buffer("frame", 1)?,
+            lights: door.buffer("lights", MAX_LIGHTS)?,
+            attributes: door.buffer("attributes", sizes.attributes)?,
+            counters: door.buffer("counters", sizes.counters)?,
+            color: door.buffer("color", sizes.color)?,
+            list: door.buffer("list", sizes.list)?,
+            masks: door.buffer("masks", sizes.masks)?,
+            sums: door.buffer("sums", sizes.sums)?,
+        })
+    }
+
+    fn write_inputs(&self, door: &Door, inputs: &FrameInputs) -> Result<()> {
+        door.write(&self.params, 0, std::slice::from_ref(&inputs.params))?;
+        if inputs.lights.is_empty() { Ok(()) } else { door.write(&self.lights, 0, &inputs.lights) }
+    }
+
     fn get(&self, buffer: FrameBuffer) -> &Buffer<u32> {
         match buffer {
             FrameBuffer::Attributes => &self.attributes,
@@ -92,117 +113,50 @@ impl FrameOnDevice {
     }
 }
 
-impl OpenClBackend {
-    /// Uploads `scene` to the device behind `door`. `strict` kernels equal the CPU twin bit for bit.
-    ///
-    /// # Errors
-    /// A limit of the device or its profile, or a failing call.
-    pub fn new(door: Door, scene: &Arc<SceneBuffers>, strict: bool) -> Result<Self> {
-        OpenClBackend::watched(door, scene, strict, &Monitor::default())
-    }
-
-    /// As [`OpenClBackend::new`]; `monitor` watches until [`Backend::watch`] is called.
-    ///
-    /// # Errors
-    /// As for [`OpenClBackend::new`]; [`crate::Error::Cancelled`].
-    pub fn watched(door: Door, scene: &Arc<SceneBuffers>, strict: bool, monitor: &Monitor) -> Result<Self> {
-        door.watch(monitor);
-        let on_device = SceneOnDevice::upload(&door, scene)?;
-        let scan_group = scan_group(door.limits());
-        let (anchor, traversal) = (scene.shading == Shading::Anchor, door.choices().traversal());
-        let mut backend = OpenClBackend {
+impl OpenClExecutor {
+    /// An executor on the device behind `door`. `strict` kernels equal the CPU twin bit for bit; `mutation` breaks
+    /// kernels on purpose, for tests and for the self-test's negative control.
+    pub fn new(door: Door, strict: bool, mutation: Option<Mutation>) -> Self {
+        let (scan_group, traversal) = (scan_group(door.limits()), door.choices().traversal());
+        let mut executor = OpenClExecutor {
             door,
-            host_scene: Arc::clone(scene),
-            scene: Some(on_device),
-            buffers: None,
+            is_lost: false,
             kernels: HashMap::new(),
-            flavour: BuildFlavour { strict, count: false, anchor, traversal },
-            mutation: None,
+            strict,
+            traversal,
+            mutation,
             scan_group,
             program_ms: 0.0,
-            frame: bytemuck::Zeroable::zeroed(),
             peak_before: 0,
-            monitor: monitor.clone(),
+            monitor: Monitor::default(),
         };
-        backend.fit_scans();
-        Ok(backend)
+        executor.fit_scans();
+        executor
     }
 
     /// Lowers the work-group of scans to what the driver allows their kernel, which it says once that is built.
     fn fit_scans(&mut self) {
-        let scan = Kernel::PackScan;
+        let scan = (Kernel::PackScan, self.flavour(Shading::Full, false));
         // What forbids the program is told when a frame wants it.
-        if self.build(scan).is_ok()
-            && let Some(kernel) = self.kernels.get(&(scan, self.flavour))
+        if self.build(scan.0, scan.1).is_ok()
+            && let Some(kernel) = self.kernels.get(&scan)
         {
             let [fitted, _] = self.door.fit_work_group(kernel, [self.scan_group as usize, 1], true);
             self.scan_group = fitted.max(2) as u32;
         }
     }
 
-    /// Breaks the kernels on purpose: for tests, and for the self-test's negative control.
-    pub fn mutate(&mut self, mutation: Option<Mutation>) {
-        self.mutation = mutation;
-        self.kernels.clear();
-    }
-
-    /// Does `work` with `scene` in place of the own one, with the same programs; afterwards the own scene, an empty frame
-    /// and fresh measurements are back. `scene` must be shaded by the own scene's rules.
-    pub(crate) fn with_scene<T>(
-        &mut self,
-        scene: &Arc<SceneBuffers>,
-        work: impl FnOnce(&mut Self) -> Result<T>,
-    ) -> Result<T> {
-        let uploaded = SceneOnDevice::upload(&self.door, scene)?;
-        let own = self.scene.replace(uploaded);
-        let done = work(self);
-        self.scene = own;
-        self.buffers = None;
-        let fresh = self.door.start_afresh();
-        let done = done?;
-        fresh.map(|()| done)
-    }
-
-    /// Whether the device was lost, so that it must be opened again before a frame.
-    pub fn is_lost(&self) -> bool {
-        self.scene.is_none()
-    }
-
-    /// Gives up everything on a device that was lost.
-    pub fn give_up(&mut self) {
-        self.buffers = None;
-        self.kernels.clear();
-        self.scene = None;
-    }
-
-    /// Opens the device again after it was lost: a new context with scene and programs, and slices of half the time.
-    ///
-    /// # Errors
-    /// A device that cannot be opened any more, or a failing upload; the device is lost still.
-    pub fn reopen(&mut self) -> Result<()> {
-        self.give_up();
-        self.peak_before = self.peak_bytes();
-        self.door = self.door.reopen()?;
-        self.door.watch(&self.monitor);
-        self.scene = Some(SceneOnDevice::upload(&self.door, &self.host_scene)?);
-        Ok(())
+    fn flavour(&self, shading: Shading, count: bool) -> BuildFlavour {
+        let anchor = shading == Shading::Anchor;
+        BuildFlavour { strict: self.strict, count, anchor, traversal: self.traversal }
     }
 
     /// The options and texts that the device's compiler gets, in one: what a verdict about the kernels depends on.
-    pub(crate) fn program_texts(&self) -> String {
+    pub(crate) fn program_texts(&self, shading: Shading) -> String {
         let programs = Program::ALL.map(|program| kernels::program_source(program, self.mutation.as_ref()));
         let probe = kernels::assemble("probe.cl", self.mutation.as_ref());
-        format!("{} {:?} {probe} {}", layout::build_options(self.flavour), self.flavour, programs.concat())
-    }
-
-    /// The rules that its scene is shaded by.
-    pub(crate) fn shading(&self) -> Shading {
-        if self.flavour.anchor { Shading::Anchor } else { Shading::Full }
-    }
-
-    /// Milliseconds spent building programs so far.
-    pub fn program_ms(&self) -> f64 {
-        self.program_ms
+        let flavour = self.flavour(shading, false);
+        format!("{} {flavour:?} {probe} {}", layout::build_options(flavour), programs.concat())
     }
 
     /// Sizes and offsets of the shared structs as this device's compiler lays them out, in the order of
@@ -214,11 +168,11 @@ impl OpenClBackend {
         let len = layout::struct_layout().len();
         let out: Buffer<u32> = self.door.buffer("probe", len)?;
         let source = kernels::assemble("probe.cl", self.mutation.as_ref());
-        let options = layout::build_options(self.flavour);
+        let options = layout::build_options(self.flavour(Shading::Full, false));
         let program = self.door.program(&ProgramSource { name: "probe", source: &source, options: &options })?;
         let kernel = program.kernel("probe")?;
         let args = [Arg::Buffer(&out)];
-        self.door.launch(&Launch {
+        self.door.launch(&DeviceLaunch {
             label: "probe",
             kernel: &kernel,
             args: &args,
@@ -234,21 +188,21 @@ impl OpenClBackend {
         &self.door
     }
 
-    fn build(&mut self, kernel: Kernel) -> Result<()> {
-        if self.kernels.contains_key(&(kernel, self.flavour)) {
+    fn build(&mut self, kernel: Kernel, flavour: BuildFlavour) -> Result<()> {
+        if self.kernels.contains_key(&(kernel, flavour)) {
             return Ok(());
         }
         self.monitor.check()?;
         let started = std::time::Instant::now();
         let program = kernel.program();
-        let mut options = layout::build_options(self.flavour);
-        if self.flavour.strict && self.door.limits().correctly_rounded_divide_sqrt {
+        let mut options = layout::build_options(flavour);
+        if flavour.strict && self.door.limits().correctly_rounded_divide_sqrt {
             options.push_str(" -cl-fp32-correctly-rounded-divide-sqrt");
         }
         let source = kernels::program_source(program, self.mutation.as_ref());
         let built = self.door.program(&ProgramSource { name: program.name(), source: &source, options: &options })?;
         for entry in program.kernels() {
-            self.kernels.insert((entry, self.flavour), built.kernel(entry.name())?);
+            self.kernels.insert((entry, flavour), built.kernel(entry.name())?);
         }
         self.program_ms += started.elapsed().as_secs_f64() * 1e3;
         Ok(())
@@ -277,10 +231,45 @@ fn previous_power_of_two(n: usize) -> usize {
     1 << (usize::BITS - 1 - n.max(1).leading_zeros())
 }
 
-impl Backend for OpenClBackend {
-    fn info(&self) -> BackendInfo {
+/// The kernel's arguments, in order.
+fn arguments<'a>(launch: &'a Launch, scene: &'a SceneOnDevice, frame: &'a FrameOnDevice) -> Vec<Arg<'a>> {
+    let mut args: Vec<Arg> = Vec::with_capacity(20);
+    for binding in launch.kernel.bindings() {
+        match binding {
+            Binding::Frame => args.push(Arg::Buffer(&frame.params)),
+            Binding::Scene => {
+                let all: [&dyn AnyBuffer; 11] = [
+                    &frame.params,
+                    &frame.lights,
+                    &scene.nodes,
+                    &scene.leaf_triangles,
+                    &scene.triangles,
+                    &scene.triangle_shading,
+                    &scene.materials,
+                    &scene.object_materials,
+                    &scene.textures,
+                    &scene.texels,
+                    &scene.tables,
+                ];
+                args.extend(all.map(Arg::Buffer));
+            }
+            Binding::Step => args.push(Arg::value(launch.step)),
+            Binding::Attributes => args.push(Arg::Buffer(&frame.attributes)),
+            Binding::Color => args.push(Arg::Buffer(&frame.color)),
+            Binding::Counters => args.push(Arg::Buffer(&frame.counters)),
+            Binding::List => args.push(Arg::Buffer(&frame.list)),
+            Binding::Masks => args.push(Arg::Buffer(&frame.masks)),
+            Binding::Sums => args.push(Arg::Buffer(&frame.sums)),
+            Binding::Scratch => args.push(Arg::Local(8 * launch.step.scan_group as usize)),
+        }
+    }
+    args
+}
+
+impl Executor for OpenClExecutor {
+    fn info(&self) -> ExecutorInfo {
         let info = self.door.info();
-        BackendInfo {
+        ExecutorInfo {
             name: info.name.clone(),
             version: format!("{}, driver {}", info.version, info.driver),
             backend: "opencl",
@@ -292,13 +281,8 @@ impl Backend for OpenClBackend {
         self.scan_group
     }
 
-    fn prefers_few_launches(&self) -> bool {
-        // Each of its kernels is compiled before it first runs, and a launch costs microseconds.
-        !self.door.is_cpu()
-    }
-
     fn traversal(&self) -> Traversal {
-        self.flavour.traversal
+        self.traversal
     }
 
     fn memory_limits(&self) -> MemoryLimits {
@@ -306,64 +290,34 @@ impl Backend for OpenClBackend {
         MemoryLimits { total_bytes: limits.global_mem_bytes, allocation_bytes: limits.max_mem_alloc_bytes }
     }
 
-    fn begin(&mut self, frame: &FrameParams, sizes: &BufferSizes) -> Result<()> {
-        if !self.buffers.as_ref().is_some_and(|(existing, _)| existing.hold(sizes)) {
-            // Old buffers go first: both together may not fit.
-            self.buffers = None;
-            let door = &self.door;
-            let on_device = FrameOnDevice {
-                attributes: door.buffer("attributes", sizes.attributes)?,
-                counters: door.buffer("counters", sizes.counters)?,
-                color: door.buffer("color", sizes.color)?,
-                list: door.buffer("list", sizes.list)?,
-                masks: door.buffer("masks", sizes.masks)?,
-                sums: door.buffer("sums", sizes.sums)?,
-            };
-            self.buffers = Some((*sizes, on_device));
-        }
-        self.flavour.count = sizes.counters > 0;
-        self.frame = *frame;
-        match &self.scene {
-            Some(scene) => self.door.write(&scene.frame, 0, std::slice::from_ref(frame)),
-            None => Ok(()),
-        }
+    fn prefers_few_launches(&self) -> bool {
+        // Each of a CPU's kernels is compiled before it first runs, and a launch costs microseconds.
+        !self.door.is_cpu()
     }
 
-    fn run(&mut self, stage: Stage, kernel: Kernel, step: &StepParams) -> Result<()> {
-        self.build(kernel)?;
-        let (Some(scene), Some((sizes, buffers))) = (&self.scene, &self.buffers) else { return Ok(()) };
-        check_launch(stage, kernel, step, &self.frame, sizes)?;
-        let device_kernel = &self.kernels[&(kernel, self.flavour)];
-        let mut args: Vec<Arg> = Vec::with_capacity(20);
-        for binding in kernel.bindings() {
-            match binding {
-                Binding::Frame => args.push(Arg::Buffer(&scene.frame)),
-                Binding::Scene => {
-                    let all: [&dyn AnyBuffer; 11] = [
-                        &scene.frame,
-                        &scene.lights,
-                        &scene.nodes,
-                        &scene.leaf_triangles,
-                        &scene.triangles,
-                        &scene.triangle_shading,
-                        &scene.materials,
-                        &scene.object_materials,
-                        &scene.textures,
-                        &scene.texels,
-                        &scene.tables,
-                    ];
-                    args.extend(all.map(Arg::Buffer));
-                }
-                Binding::Step => args.push(Arg::value(step)),
-                Binding::Attributes => args.push(Arg::Buffer(&buffers.attributes)),
-                Binding::Color => args.push(Arg::Buffer(&buffers.color)),
-                Binding::Counters => args.push(Arg::Buffer(&buffers.counters)),
-                Binding::List => args.push(Arg::Buffer(&buffers.list)),
-                Binding::Masks => args.push(Arg::Buffer(&buffers.masks)),
-                Binding::Sums => args.push(Arg::Buffer(&buffers.sums)),
-                Binding::Scratch => args.push(Arg::Local(8 * step.scan_group as usize)),
-            }
-        }
+    fn upload(&mut self, scene: &Arc<PreparedScene>) -> Result<SceneHandle> {
+        Ok(SceneHandle::new(scene, SceneOnDevice::upload(&self.door, scene)?))
+    }
+
+    fn allocate(&mut self, inputs: &FrameInputs, sizes: &FrameSizes) -> Result<FrameHandle> {
+        let memory = FrameOnDevice::allocate(&self.door, sizes)?;
+        memory.write_inputs(&self.door, inputs)?;
+        Ok(FrameHandle::new(inputs.clone(), *sizes, memory))
+    }
+
+    fn begin(&mut self, frame: &mut FrameHandle, inputs: &FrameInputs) -> Result<()> {
+        frame.memory::<FrameOnDevice>()?.write_inputs(&self.door, inputs)?;
+        frame.set_inputs(inputs);
+        Ok(())
+    }
+
+    fn run(&mut self, launch: &Launch) -> Result<()> {
+        let Launch { stage, kernel, step, .. } = *launch;
+        check_launch(stage, kernel, step, launch.frame.params(), launch.frame.sizes())?;
+        let (scene, frame) = (launch.scene.memory::<SceneOnDevice>()?, launch.frame.memory::<FrameOnDevice>()?);
+        let flavour = self.flavour(launch.scene.prepared().shading, launch.frame.sizes().counters > 0);
+        self.build(kernel, flavour)?;
+        let device_kernel = &self.kernels[&(kernel, flavour)];
         let items = kernel.items(stage);
         let barrier = matches!(items, Items::Groups | Items::OneGroup);
         let global = match items {
@@ -384,33 +338,24 @@ impl Backend for OpenClBackend {
         if global.contains(&0) {
             return Ok(());
         }
-        self.door.launch(&Launch {
+        self.door.launch(&DeviceLaunch {
             label: kernel.label(stage),
             kernel: device_kernel,
-            args: &args,
+            args: &arguments(launch, scene, frame),
             global,
             local: Some(local),
             barrier,
         })
     }
 
-    fn read_sum(&mut self, at: u32) -> Result<u32> {
-        let at = at as usize;
-        Ok(self.read(FrameBuffer::Sums, at..at + 1)?.first().copied().unwrap_or(0))
+    fn read(&mut self, frame: &FrameHandle, buffer: FrameBuffer, range: Range<usize>) -> Result<Vec<u32>> {
+        frame.sizes().check_range(buffer, &range)?;
+        self.door.read(frame.memory::<FrameOnDevice>()?.get(buffer), range)
     }
 
-    fn read(&mut self, buffer: FrameBuffer, range: std::ops::Range<usize>) -> Result<Vec<u32>> {
-        match &self.buffers {
-            Some((_, buffers)) => self.door.read(buffers.get(buffer), range),
-            None => Ok(Vec::new()),
-        }
-    }
-
-    fn write(&mut self, buffer: FrameBuffer, words: &[u32]) -> Result<()> {
-        match &self.buffers {
-            Some((_, buffers)) => self.door.write(buffers.get(buffer), 0, words),
-            None => Ok(()),
-        }
+    fn write(&mut self, frame: &FrameHandle, buffer: FrameBuffer, words: &[u32]) -> Result<()> {
+        frame.sizes().check_range(buffer, &(0..words.len()))?;
+        self.door.write(frame.memory::<FrameOnDevice>()?.get(buffer), 0, words)
     }
 
     fn take_timings(&mut self) -> Result<Vec<(Stage, f64)>> {
@@ -430,5 +375,24 @@ impl Backend for OpenClBackend {
 
     fn peak_bytes(&self) -> u64 {
         self.door.memory().peak_bytes.max(self.peak_before)
+    }
+
+    fn program_ms(&self) -> f64 {
+        self.program_ms
+    }
+
+    fn is_lost(&self) -> bool {
+        self.is_lost
+    }
+
+    fn reopen(&mut self) -> Result<String> {
+        self.is_lost = true;
+        self.kernels.clear();
+        self.peak_before = self.peak_bytes();
+        self.door = self.door.reopen()?;
+        self.door.watch(&self.monitor);
+        self.is_lost = false;
+        let slices = self.door.slice_ms().map_or("whole".into(), |ms| format!("of {ms:.1} ms"));
+        Ok(format!("launches are {slices} now"))
     }
 }

@@ -34,7 +34,7 @@ impl<'a> Arg<'a> {
 }
 
 /// One launch of a kernel.
-pub struct Launch<'a> {
+pub struct DeviceLaunch<'a> {
     /// The stage and the kernel: the label of its time, its slices and its errors.
     pub label: &'static str,
     /// What runs.
@@ -60,7 +60,7 @@ impl Door {
     ///
     /// Kernels find their place by `get_global_id`, which includes a slice's offset; `get_group_id` and
     /// `get_global_size` are those of the slice.
-    pub fn launch(&self, launch: &Launch) -> Result<()> {
+    pub fn launch(&self, launch: &DeviceLaunch) -> Result<()> {
         let label = launch.label;
         let plan = self.plan(launch)?;
         let mut slicer = Slicer::new(plan.groups, plan.step);
@@ -121,7 +121,7 @@ impl Door {
     }
 
     /// Checks every limit and works out the launch in work-groups.
-    fn plan(&self, launch: &Launch) -> Result<Plan> {
+    fn plan(&self, launch: &DeviceLaunch) -> Result<Plan> {
         let label = launch.label;
         let what = format!("stage `{label}`");
         let limits = self.limits();
@@ -192,7 +192,7 @@ struct Plan {
     groups: [usize; 2],
 }
 
-fn set_args(launch: &Launch) -> Result<()> {
+fn set_args(launch: &DeviceLaunch) -> Result<()> {
     for (index, arg) in launch.args.iter().enumerate() {
         let raw;
         let (size, pointer): (usize, *const c_void) = match arg {

@@ -27,7 +27,7 @@ pub use cache::CacheFolder;
 pub use discover::{DeviceFound, DeviceInfo, DeviceKind, Discovery, discover};
 pub use door::{Door, MemoryUse, OpenOptions, open, open_with};
 pub use faults::Faults;
-pub use launch::{Arg, Launch};
+pub use launch::{Arg, DeviceLaunch};
 pub use limits::Limits;
 pub use program::{Kernel, Program, ProgramSource};
 

@@ -1,68 +1,103 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! The CPU twin as a back end.
+//! The CPU twin as an executor.
 
+use std::ops::Range;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::time::Instant;
 
-use crate::device::backend::{Backend, BackendInfo, BufferSizes, FrameBuffer, MemoryLimits};
+use super::{FrameBuffers, SceneArgs, Words};
+use crate::device::executor::{Executor, ExecutorInfo, MemoryLimits};
+use crate::device::frame_memory::{FrameBuffer, FrameHandle, FrameInputs, FrameSizes};
+use crate::device::launch::{Launch, SceneHandle};
 use crate::device::launch_check::check_launch;
-use crate::device::stage::{Kernel, Stage};
-use crate::device::twin::{self, FrameBuffers, SceneArgs, Words};
+use crate::device::stage::Stage;
 use crate::error::Result;
-use crate::layout::{FrameParams, StepParams, Traversal};
+use crate::layout::Traversal;
 use crate::monitor::Monitor;
-use crate::prepare::scene_buffers::{SceneBuffers, Shading};
+use crate::prepare::{PreparedScene, Shading};
+
+/// Work-items of a scan's work-group, unless the twin imitates a device.
+const SCAN_GROUP: u32 = 256;
+
+/// Bytes of scenes and frames that are alive.
+#[derive(Debug, Default)]
+struct Account {
+    current_bytes: AtomicU64,
+    peak_bytes: AtomicU64,
+}
+
+/// A share of an account, given back when dropped.
+struct Reservation {
+    account: Arc<Account>,
+    bytes: u64,
+}
+
+impl Reservation {
+    fn new(account: &Arc<Account>, bytes: u64) -> Self {
+        let current = account.current_bytes.fetch_add(bytes, Relaxed) + bytes;
+        account.peak_bytes.fetch_max(current, Relaxed);
+        Reservation { account: Arc::clone(account), bytes }
+    }
+}
+
+impl Drop for Reservation {
+    fn drop(&mut self) {
+        self.account.current_bytes.fetch_sub(self.bytes, Relaxed);
+    }
+}
+
+/// A frame in the twin's memory.
+struct TwinFrame {
+    buffers: FrameBuffers,
+    _reserved: Reservation,
+}
 
 /// Runs every kernel's twin on the cores of this machine.
-pub struct TwinBackend {
-    scene: Arc<SceneBuffers>,
-    frame: Option<FrameParams>,
-    sizes: Option<BufferSizes>,
-    buffers: FrameBuffers,
+pub struct TwinExecutor {
     traversal: Traversal,
+    scan_group: u32,
+    few_launches: bool,
     timings: Vec<(Stage, f64)>,
-    peak_bytes: u64,
+    account: Arc<Account>,
     monitor: Monitor,
 }
 
-impl TwinBackend {
-    /// A back end for `scene`.
-    pub fn new(scene: Arc<SceneBuffers>) -> Self {
-        let peak_bytes = scene.bytes();
-        TwinBackend {
-            scene,
-            frame: None,
-            sizes: None,
-            buffers: FrameBuffers::default(),
+impl Default for TwinExecutor {
+    fn default() -> Self {
+        TwinExecutor {
             traversal: Traversal::default(),
+            scan_group: SCAN_GROUP,
+            few_launches: true,
             timings: Vec::new(),
-            peak_bytes,
+            account: Arc::default(),
             monitor: Monitor::default(),
-        }
-    }
-
-    /// Lets rays walk as a device does that was built for `traversal`, so that steps can be compared.
-    pub fn walk_by(&mut self, traversal: Traversal) {
-        self.traversal = traversal;
-    }
-
-    fn buffer(&self, buffer: FrameBuffer) -> &Words {
-        match buffer {
-            FrameBuffer::Attributes => &self.buffers.attributes,
-            FrameBuffer::Counters => &self.buffers.counters,
-            FrameBuffer::Color => &self.buffers.color,
-            FrameBuffer::List => &self.buffers.list,
-            FrameBuffer::Masks => &self.buffers.masks,
-            FrameBuffer::Sums => &self.buffers.sums,
         }
     }
 }
 
-/// The scene's arrays as arguments of twin functions, with a private stack for each ray.
-pub fn scene_args<'a>(scene: &'a SceneBuffers, frame: &'a FrameParams) -> SceneArgs<'a> {
+impl TwinExecutor {
+    /// A twin that walks through kd-trees and scans as `device` does, so that all their words can be compared.
+    pub fn imitating(device: &dyn Executor) -> Self {
+        TwinExecutor { traversal: device.traversal(), scan_group: device.scan_group(), ..TwinExecutor::default() }
+    }
+
+    /// The same twin, which prefers few launches or does not.
+    pub fn preferring_few_launches(self, few_launches: bool) -> Self {
+        TwinExecutor { few_launches, ..self }
+    }
+
+    /// A twin whose rays walk as a device does that was built for `traversal`.
+    pub fn walking_by(traversal: Traversal) -> Self {
+        TwinExecutor { traversal, ..TwinExecutor::default() }
+    }
+}
+
+/// What twin functions get of a scene and a frame, with a private stack for each ray.
+pub fn scene_args<'a>(scene: &'a PreparedScene, inputs: &'a FrameInputs) -> SceneArgs<'a> {
     SceneArgs {
-        frame,
-        lights: &scene.lights,
+        frame: &inputs.params,
+        lights: &inputs.lights,
         nodes: &scene.tree.nodes,
         leaf_triangles: &scene.tree.leaf_triangles,
         triangles: &scene.triangles,
@@ -77,9 +112,20 @@ pub fn scene_args<'a>(scene: &'a SceneBuffers, frame: &'a FrameParams) -> SceneA
     }
 }
 
-impl Backend for TwinBackend {
-    fn info(&self) -> BackendInfo {
-        BackendInfo {
+fn words(buffers: &FrameBuffers, buffer: FrameBuffer) -> &Words {
+    match buffer {
+        FrameBuffer::Attributes => &buffers.attributes,
+        FrameBuffer::Counters => &buffers.counters,
+        FrameBuffer::Color => &buffers.color,
+        FrameBuffer::List => &buffers.list,
+        FrameBuffer::Masks => &buffers.masks,
+        FrameBuffer::Sums => &buffers.sums,
+    }
+}
+
+impl Executor for TwinExecutor {
+    fn info(&self) -> ExecutorInfo {
+        ExecutorInfo {
             name: format!("CPU twin, {} threads", rayon::current_num_threads()),
             version: env!("CARGO_PKG_VERSION").into(),
             backend: "cpu",
@@ -88,62 +134,67 @@ impl Backend for TwinBackend {
     }
 
     fn scan_group(&self) -> u32 {
-        256
+        self.scan_group
     }
 
     fn memory_limits(&self) -> MemoryLimits {
         MemoryLimits { total_bytes: u64::MAX, allocation_bytes: u64::MAX }
     }
 
-    fn prefers_few_launches(&self) -> bool {
-        true
-    }
-
     fn traversal(&self) -> Traversal {
         self.traversal
     }
 
-    fn begin(&mut self, frame: &FrameParams, sizes: &BufferSizes) -> Result<()> {
-        if !self.sizes.is_some_and(|existing| existing.hold(sizes)) {
-            // Old buffers go first: both together may not fit.
-            (self.sizes, self.buffers) = (None, FrameBuffers::default());
-            let zeroed = |words| Words::zeroed_unless_cancelled(words, &self.monitor);
-            self.buffers = FrameBuffers {
-                attributes: zeroed(sizes.attributes)?,
-                counters: zeroed(sizes.counters)?,
-                color: zeroed(sizes.color)?,
-                list: zeroed(sizes.list)?,
-                masks: zeroed(sizes.masks)?,
-                sums: zeroed(sizes.sums)?,
-            };
-            self.sizes = Some(*sizes);
-            self.peak_bytes = self.peak_bytes.max(self.scene.bytes() + sizes.bytes());
-        }
-        self.frame = Some(*frame);
+    fn prefers_few_launches(&self) -> bool {
+        self.few_launches
+    }
+
+    fn upload(&mut self, scene: &Arc<PreparedScene>) -> Result<SceneHandle> {
+        // The prepared scene is what the twin reads: nothing is copied.
+        Ok(SceneHandle::new(scene, Reservation::new(&self.account, scene.bytes())))
+    }
+
+    fn allocate(&mut self, inputs: &FrameInputs, sizes: &FrameSizes) -> Result<FrameHandle> {
+        let zeroed = |buffer| Words::zeroed_unless_cancelled(sizes.of(buffer), &self.monitor);
+        let buffers = FrameBuffers {
+            attributes: zeroed(FrameBuffer::Attributes)?,
+            counters: zeroed(FrameBuffer::Counters)?,
+            color: zeroed(FrameBuffer::Color)?,
+            list: zeroed(FrameBuffer::List)?,
+            masks: zeroed(FrameBuffer::Masks)?,
+            sums: zeroed(FrameBuffer::Sums)?,
+        };
+        let frame = TwinFrame { buffers, _reserved: Reservation::new(&self.account, sizes.bytes()) };
+        Ok(FrameHandle::new(inputs.clone(), *sizes, frame))
+    }
+
+    fn begin(&mut self, frame: &mut FrameHandle, inputs: &FrameInputs) -> Result<()> {
+        frame.set_inputs(inputs);
         Ok(())
     }
 
-    fn run(&mut self, stage: Stage, kernel: Kernel, step: &StepParams) -> Result<()> {
-        let (Some(frame), Some(sizes)) = (&self.frame, &self.sizes) else { return Ok(()) };
-        check_launch(stage, kernel, step, frame, sizes)?;
+    fn run(&mut self, launch: &Launch) -> Result<()> {
+        let Launch { stage, kernel, step, scene, frame } = *launch;
+        check_launch(stage, kernel, step, frame.params(), frame.sizes())?;
+        // A scene of another executor is refused here as there, though the twin could read it.
+        scene.memory::<Reservation>()?;
+        let buffers = &frame.memory::<TwinFrame>()?.buffers;
         let started = Instant::now();
-        let scene = twin::SceneArgs { traversal: self.traversal, ..scene_args(&self.scene, frame) };
-        twin::run(stage, kernel, &scene, step, &self.buffers, &self.monitor)?;
+        let args = SceneArgs { traversal: self.traversal, ..scene_args(scene.prepared(), frame.inputs()) };
+        super::run(stage, kernel, &args, step, buffers, &self.monitor)?;
         self.timings.push((stage, started.elapsed().as_secs_f64() * 1e3));
         Ok(())
     }
 
-    fn read_sum(&mut self, at: u32) -> Result<u32> {
-        Ok(self.buffers.sums.get(at))
+    fn read(&mut self, frame: &FrameHandle, buffer: FrameBuffer, range: Range<usize>) -> Result<Vec<u32>> {
+        frame.sizes().check_range(buffer, &range)?;
+        Ok(words(&frame.memory::<TwinFrame>()?.buffers, buffer).to_vec(range))
     }
 
-    fn read(&mut self, buffer: FrameBuffer, range: std::ops::Range<usize>) -> Result<Vec<u32>> {
-        Ok(self.buffer(buffer).to_vec(range))
-    }
-
-    fn write(&mut self, buffer: FrameBuffer, words: &[u32]) -> Result<()> {
-        let target = self.buffer(buffer);
-        for (at, &word) in words.iter().enumerate() {
+    fn write(&mut self, frame: &FrameHandle, buffer: FrameBuffer, new: &[u32]) -> Result<()> {
+        frame.sizes().check_range(buffer, &(0..new.len()))?;
+        let target = words(&frame.memory::<TwinFrame>()?.buffers, buffer);
+        for (at, &word) in new.iter().enumerate() {
             target.set(at as u32, word);
         }
         Ok(())
@@ -162,6 +213,6 @@ impl Backend for TwinBackend {
     }
 
     fn peak_bytes(&self) -> u64 {
-        self.peak_bytes
+        self.account.peak_bytes.load(Relaxed)
     }
 }

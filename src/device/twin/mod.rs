@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! The CPU twin of every kernel: the truth that kernels are tested against, and the back end where there is no OpenCL.
+//! The CPU twin of every kernel: the truth that kernels are tested against, and the executor where there is no OpenCL.
 //!
 //! A twin is a function of one work-item (or, for kernels with barriers, one work-group) over the same buffers, written
 //! like the kernel so that the two can be read side by side. [`run`] is the launch: all items of a kernel, in parallel.

@@ -3,10 +3,12 @@
 
 use std::collections::BTreeMap;
 
-use crate::device::backend::{Backend, FrameBuffer};
+use crate::device::executor::Executor;
+use crate::device::frame_memory::{FrameBuffer, FrameHandle};
+use crate::device::launch::Queue;
 use crate::error::Result;
 use crate::layout::*;
-use crate::method::frame::{Keep, RayCounts, WorkCounts};
+use crate::method::counts::{Keep, RayCounts, WorkCounts};
 use crate::method::options::Test;
 
 /// Rays, work and failed tests, summed over windows.
@@ -45,69 +47,62 @@ impl CounterSums {
 
 /// Which pixels of a window are new to the host.
 #[derive(Debug, Clone, Copy)]
-pub enum Taken<'a> {
+pub enum NewPixels<'a> {
     /// The interior: the window was drawn for the first time.
     Interior,
     /// These: the window was drawn again to trace them.
-    Pixels(&'a [u32]),
+    Listed(&'a [u32]),
 }
 
 /// A frame's samples and planes on the host, row-major over the whole frame.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Collected {
     width: u32,
     /// The colour of every sample.
     pub colors: Vec<u32>,
     /// Planes by number: attribute planes, then counter planes from [`PLANE_COUNT`] on.
     pub planes: BTreeMap<u32, Vec<u32>>,
-    /// Sums of the counters.
-    pub sums: CounterSums,
 }
 
 impl Collected {
-    /// Room for a frame of which `keep` is wanted.
+    /// Room for the colours of a frame, and for the planes of `keep`.
     pub fn new(frame: &FrameParams, keep: Keep) -> Self {
         let samples = frame.width as usize * frame.height as usize;
         let planes = (0..PLANE_COUNT + COUNTER_COUNT).filter(|&plane| keep.has(plane));
-        Collected {
-            width: frame.width,
-            colors: vec![0; samples],
-            planes: planes.map(|plane| (plane, vec![0; samples])).collect(),
-            sums: CounterSums::default(),
-        }
-    }
-
-    /// Room for planes alone.
-    pub(crate) fn without_colors(frame: &FrameParams) -> Self {
-        let (colors, planes) = (Vec::new(), BTreeMap::new());
-        Collected { width: frame.width, colors, planes, sums: CounterSums::default() }
+        let planes = planes.map(|plane| (plane, vec![0; samples])).collect();
+        Collected { width: frame.width, colors: vec![0; samples], planes }
     }
 
     /// Takes over a window that has just been drawn.
     ///
     /// # Errors
     /// A failing read.
-    pub fn take(&mut self, backend: &mut dyn Backend, frame: &FrameParams, taken: Taken) -> Result<()> {
+    pub fn take(&mut self, queue: &mut Queue, new: NewPixels) -> Result<()> {
+        let frame = *queue.params();
         let rows = frame.interior_begin..frame.interior_end;
-        let words = backend.read(FrameBuffer::Color, window_words(frame, rows.clone()))?;
-        let first = color_index(frame, 0, rows.start);
-        copy(&mut self.colors, self.width, frame, taken, |x, y| words[(color_index(frame, x, y) - first) as usize]);
+        let words = queue.read(FrameBuffer::Color, window_words(&frame, rows.clone()))?;
+        if words.len() == self.colors.len() {
+            self.colors = words;
+        } else {
+            let first = color_index(&frame, 0, rows.start);
+            copy(&mut self.colors, self.width, &frame, new, |x, y| words[(color_index(&frame, x, y) - first) as usize]);
+        }
         for (&plane, target) in &mut self.planes {
-            backend.monitor().check()?;
-            let words = read_plane(backend, frame, plane)?;
-            copy(target, self.width, frame, taken, |x, y| words[plane_index(frame, x, y) as usize]);
+            queue.check()?;
+            let words = read_plane(queue, plane)?;
+            copy(target, self.width, &frame, new, |x, y| words[plane_index(&frame, x, y) as usize]);
         }
         Ok(())
     }
 }
 
-fn copy(target: &mut [u32], width: u32, frame: &FrameParams, taken: Taken, word: impl Fn(u32, u32) -> u32) {
+fn copy(target: &mut [u32], width: u32, frame: &FrameParams, new: NewPixels, word: impl Fn(u32, u32) -> u32) {
     let mut put = |x: u32, y: u32| target[y as usize * width as usize + x as usize] = word(x, y);
-    match taken {
-        Taken::Interior => {
+    match new {
+        NewPixels::Interior => {
             (frame.interior_begin..frame.interior_end).for_each(|y| (0..frame.width).for_each(|x| put(x, y)));
         }
-        Taken::Pixels(pixels) => pixels.iter().for_each(|&pixel| put(pixel & 0xffff, pixel >> 16)),
+        NewPixels::Listed(pixels) => pixels.iter().for_each(|&pixel| put(pixel & 0xffff, pixel >> 16)),
     }
 }
 
@@ -116,38 +111,52 @@ fn window_words(frame: &FrameParams, rows: std::ops::Range<u32>) -> std::ops::Ra
     color_index(frame, 0, rows.start) as usize..color_index(frame, 0, rows.end) as usize
 }
 
-/// An attribute plane, or from [`PLANE_COUNT`] on a counter plane, of the window in a back end's buffers.
-///
-/// # Errors
-/// A failing read.
-pub fn read_plane(backend: &mut dyn Backend, frame: &FrameParams, plane: u32) -> Result<Vec<u32>> {
+/// Where a plane of the window lies: an attribute plane, or from [`PLANE_COUNT`] on a counter plane.
+fn plane_words(frame: &FrameParams, plane: u32) -> (FrameBuffer, std::ops::Range<usize>) {
     let pitch = frame.plane_pitch as usize;
     let (buffer, start) = match plane.checked_sub(PLANE_COUNT) {
         Some(counter) => (FrameBuffer::Counters, counter as usize * pitch),
         None => (FrameBuffer::Attributes, plane as usize * pitch),
     };
-    backend.read(buffer, start..start + pitch)
+    (buffer, start..start + pitch)
 }
 
-/// Adds up the counters of the window in a back end's buffers. `first_time`: failed tests count, too.
+/// An attribute plane, or from [`PLANE_COUNT`] on a counter plane, of the window in a queue's frame.
 ///
 /// # Errors
 /// A failing read.
-pub fn sum_counters(
-    backend: &mut dyn Backend,
-    frame: &FrameParams,
-    sums: &mut CounterSums,
-    first_time: bool,
-) -> Result<()> {
+pub fn read_plane(queue: &mut Queue, plane: u32) -> Result<Vec<u32>> {
+    let (buffer, words) = plane_words(queue.params(), plane);
+    queue.read(buffer, words)
+}
+
+/// A plane of a frame that is one window, row-major.
+///
+/// # Errors
+/// A failing read.
+pub fn read_frame_plane(executor: &mut dyn Executor, frame: &FrameHandle, plane: u32) -> Result<Vec<u32>> {
+    let params = frame.params();
+    let (buffer, words) = plane_words(params, plane);
+    let words = executor.read(frame, buffer, words)?;
+    let pixels = (0..params.height).flat_map(|y| (0..params.width).map(move |x| (x, y)));
+    Ok(pixels.map(|(x, y)| words[plane_index(params, x, y) as usize]).collect())
+}
+
+/// Adds up the counters of the window in a queue's frame. `first_time`: failed tests count, too.
+///
+/// # Errors
+/// A failing read.
+pub fn sum_counters(queue: &mut Queue, sums: &mut CounterSums, first_time: bool) -> Result<()> {
+    let frame = &queue.params().clone();
     let classes = match frame.block {
         1 => None,
-        _ => Some(read_plane(backend, frame, PLANE_CLASS)?),
+        _ => Some(read_plane(queue, PLANE_CLASS)?),
     };
     for counter in 0..COUNTER_COUNT {
-        let words = read_plane(backend, frame, PLANE_COUNT + counter)?;
+        let words = read_plane(queue, PLANE_COUNT + counter)?;
         let is_traversal = matches!(counter, COUNTER_TRAVERSAL_STEPS | COUNTER_TRIANGLE_TESTS);
         for y in frame.window_begin..frame.window_end {
-            backend.monitor().check()?;
+            queue.check()?;
             for x in 0..frame.width {
                 let at = plane_index(frame, x, y) as usize;
                 let count = u64::from(words[at]);
@@ -161,7 +170,7 @@ pub fn sum_counters(
     }
     if let (true, Some(classes)) = (first_time, classes) {
         for y in frame.interior_begin..frame.interior_end {
-            backend.monitor().check()?;
+            queue.check()?;
             for x in 0..frame.width {
                 let class = classes[plane_index(frame, x, y) as usize];
                 for (test, sum) in Test::ALL.into_iter().zip(&mut sums.failed_tests) {

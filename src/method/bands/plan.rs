@@ -3,8 +3,8 @@
 
 use std::ops::Range;
 
-use super::Room;
-use crate::device::backend::BufferSizes;
+use super::FrameBudget;
+use crate::device::frame_memory::FrameSizes;
 use crate::error::{Error, Remedy, Result, Setting};
 use crate::layout::{FrameParams, PLANE_COUNT};
 
@@ -15,16 +15,16 @@ pub struct Plan {
     /// Rows of a band, a multiple of the block unless the frame is one band.
     rows: u32,
     /// Buffers that hold any window of the plan.
-    pub sizes: BufferSizes,
+    pub sizes: FrameSizes,
 }
 
 impl Plan {
-    /// The fewest bands of about equal height that `room` and `most_rows` allow.
+    /// The fewest bands of about equal height that `budget` and `most_rows` allow.
     ///
     /// # Errors
     /// [`Error::LimitExceeded`] if not even one row of blocks fits.
-    pub fn new(frame: &FrameParams, room: &Room, most_rows: Option<u32>) -> Result<Plan> {
-        let fits = |rows: u32| room.sizes(&widest(frame, rows)).filter(|sizes| room.holds(sizes));
+    pub fn new(frame: &FrameParams, budget: &FrameBudget, most_rows: Option<u32>) -> Result<Plan> {
+        let fits = |rows: u32| budget.sizes(&widest(frame, rows)).filter(|sizes| budget.holds(sizes));
         let height = frame.height;
         let most_rows = most_rows.unwrap_or(height).clamp(1, height);
         if most_rows == height
@@ -40,16 +40,16 @@ impl Plan {
             if fits(middle * frame.block).is_some() { low = middle } else { high = middle }
         }
         if low == 0 {
-            return Err(room.too_small(&widest(frame, frame.block)));
+            return Err(budget.too_small(&widest(frame, frame.block)));
         }
         let bands = block_rows.div_ceil(low);
         let rows = block_rows.div_ceil(bands) * frame.block;
-        let sizes = fits(rows).ok_or_else(|| room.too_small(&widest(frame, rows)))?;
+        let sizes = fits(rows).ok_or_else(|| budget.too_small(&widest(frame, rows)))?;
         Ok(Plan { frame: *frame, rows, sizes })
     }
 
     /// Whether the whole frame is in memory at once.
-    pub fn is_one_window(&self) -> bool {
+    pub fn is_one_band(&self) -> bool {
         self.rows >= self.frame.height
     }
 
@@ -104,19 +104,19 @@ fn with_window(frame: &FrameParams, rows: Range<u32>, interior: Range<u32>) -> F
     }
 }
 
-impl Room {
+impl FrameBudget {
     /// The buffers of a window; `None` if they are beyond any address space.
-    fn sizes(&self, frame: &FrameParams) -> Option<BufferSizes> {
+    fn sizes(&self, frame: &FrameParams) -> Option<FrameSizes> {
         // Kernels address planes with 32 bits.
         let rows = u64::from(frame.window_end - frame.window_begin).next_multiple_of(u64::from(frame.block));
         let pitch = u64::from(frame.phase_width) * u64::from(frame.block) * rows;
         if pitch * u64::from(PLANE_COUNT) > u64::from(u32::MAX) {
             return None;
         }
-        BufferSizes::new(frame, self.attributes, self.counters, self.scan_group)
+        FrameSizes::new(frame, self.attributes, self.counters, self.scan_group)
     }
 
-    fn holds(&self, sizes: &BufferSizes) -> bool {
+    fn holds(&self, sizes: &FrameSizes) -> bool {
         sizes.bytes().saturating_add(self.scene_bytes) <= self.total_bytes
             && sizes.largest_bytes() <= self.allocation_bytes
     }
@@ -143,10 +143,9 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
     use crate::layout::{color_index, plane_index};
-    use crate::method::camera::{MAX_SAMPLE_SIDE, frame_params};
+    use crate::method::camera::{MAX_SAMPLE_SIDE, frame_inputs};
     use crate::method::options::RenderOptions;
-    use crate::prepare::kdtree::{BuildOptions, KdTree};
-    use crate::prepare::scene_buffers::{SceneBuffers, Shading};
+    use crate::prepare::{PreparedScene, Shading};
     use crate::scene::builtin;
 
     /// Random numbers that like powers of two, their neighbours, and both ends.
@@ -168,7 +167,7 @@ mod tests {
     }
 
     /// What must hold of a window that kernels are launched for, in whole numbers without end.
-    fn check(frame: &FrameParams, sizes: &BufferSizes, attributes: bool, counters: bool) {
+    fn check(frame: &FrameParams, sizes: &FrameSizes, attributes: bool, counters: bool) {
         let (rows, block) = (u64::from(frame.window_end - frame.window_begin), u64::from(frame.block));
         let pixels = u64::from(frame.width) * rows;
         let pitch = u64::from(frame.width).next_multiple_of(block) * rows.next_multiple_of(block);
@@ -199,10 +198,7 @@ mod tests {
     #[test]
     fn no_size_of_any_frame_overflows() {
         let scene = builtin::to_scene("wall").unwrap();
-        let tree =
-            KdTree::build(scene.positions(), scene.triangles(), &BuildOptions::default(), &crate::Monitor::default())
-                .unwrap();
-        let buffers = SceneBuffers::new(&scene, tree, Shading::Full).unwrap();
+        let scene = PreparedScene::new(&scene, Shading::Full, &crate::Monitor::default()).unwrap();
         let mut random = Random(2016);
         let (mut planned, mut refused, mut cut) = (0, 0, 0);
         for round in 0..4000 {
@@ -213,9 +209,9 @@ mod tests {
             options.validate().unwrap();
             let (width, height) = options.sample_size();
             let block = [1, 2, 4][random.bits() as usize % 3];
-            let frame = frame_params(scene.view(), &buffers, width, height, block, 4);
+            let frame = frame_inputs(scene.view(), &scene, width, height, block, 4).params;
             let limit = |random: &mut Random| [u64::MAX, u64::MAX, random.bits(), random.bits() >> 16][round % 4];
-            let room = Room {
+            let budget = FrameBudget {
                 total_bytes: limit(&mut random),
                 allocation_bytes: limit(&mut random),
                 scene_bytes: random.bits(),
@@ -224,20 +220,20 @@ mod tests {
                 scan_group: 2 << (random.bits() % 9),
             };
             let most_rows = (round % 5 == 0).then(|| random.side(height));
-            let Ok(plan) = Plan::new(&frame, &room, most_rows) else {
+            let Ok(plan) = Plan::new(&frame, &budget, most_rows) else {
                 refused += 1;
                 continue;
             };
             planned += 1;
-            cut += usize::from(!plan.is_one_window());
-            assert!(room.holds(&plan.sizes));
+            cut += usize::from(!plan.is_one_band());
+            assert!(budget.holds(&plan.sizes));
             let count = plan.bands().count();
             let mut at = 0;
             for (band, rows) in plan.bands().enumerate() {
                 assert!(rows.start == at && rows.start < rows.end && rows.start % block == 0, "{rows:?}");
                 at = rows.end;
                 if band < 3 || band + 3 > count {
-                    check(&plan.window(rows), &plan.sizes, room.attributes, room.counters);
+                    check(&plan.window(rows), &plan.sizes, budget.attributes, budget.counters);
                 }
             }
             assert_eq!(at, height);
@@ -245,9 +241,10 @@ mod tests {
         // A refusal names the memory that there is for everything, also where the scene alone is larger.
         let (total_bytes, scene_bytes) = (100 << 10, 300 << 10);
         let (attributes, counters, scan_group) = (true, false, 64);
-        let room = Room { total_bytes, allocation_bytes: u64::MAX, scene_bytes, attributes, counters, scan_group };
-        let frame = frame_params(scene.view(), &buffers, 16, 16, 2, 4);
-        let refusal = Plan::new(&frame, &room, None).unwrap_err().to_string();
+        let budget =
+            FrameBudget { total_bytes, allocation_bytes: u64::MAX, scene_bytes, attributes, counters, scan_group };
+        let frame = frame_inputs(scene.view(), &scene, 16, 16, 2, 4).params;
+        let refusal = Plan::new(&frame, &budget, None).unwrap_err().to_string();
         assert!(refusal.contains("scene's 300 KiB") && refusal.contains("allows 100 KiB in all"), "{refusal}");
         println!("{planned} frames planned, {cut} of them in bands, {refused} refused");
         assert!(planned > 1000 && refused > 100 && cut > 200);

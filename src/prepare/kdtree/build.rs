@@ -288,8 +288,8 @@ fn relocated(node: KdNode, node_base: u32, leaf_base: u32) -> KdNode {
     }
 }
 
-/// What a subtree that grows on one thread writes to and uses again.
-struct Sprout {
+/// A subtree under construction on one thread, with memory that it uses again.
+struct SerialSubtree {
     nodes: Vec<KdNode>,
     leaf_triangles: Vec<u32>,
     scratch: Scratch,
@@ -352,29 +352,29 @@ impl Builder<'_> {
             let children = if self.serial { (below(), above()) } else { rayon::join(below, above) };
             return Grown::Fork { axis: split.axis, position: split.position, children: Box::new(children) };
         }
-        let mut sprout = Sprout { nodes: Vec::new(), leaf_triangles: Vec::new(), scratch, spare: Vec::new() };
-        let root = self.grow_serially(&mut primitives, &place, &mut sprout);
+        let mut subtree = SerialSubtree { nodes: Vec::new(), leaf_triangles: Vec::new(), scratch, spare: Vec::new() };
+        let root = self.grow_serially(&mut primitives, &place, &mut subtree);
         self.count(place.weight);
-        Grown::Subtree { root, nodes: sprout.nodes, leaf_triangles: sprout.leaf_triangles }
+        Grown::Subtree { root, nodes: subtree.nodes, leaf_triangles: subtree.leaf_triangles }
     }
 
     /// Grows the tree over `primitives` on this thread; depth first, so that a node's descendants lie close together.
-    fn grow_serially(&self, primitives: &mut Vec<Primitive>, place: &Place, sprout: &mut Sprout) -> KdNode {
-        let Some(split) = self.choose(primitives, place, &mut sprout.scratch) else {
-            let first = sprout.leaf_triangles.len() as u32;
+    fn grow_serially(&self, primitives: &mut Vec<Primitive>, place: &Place, subtree: &mut SerialSubtree) -> KdNode {
+        let Some(split) = self.choose(primitives, place, &mut subtree.scratch) else {
+            let first = subtree.leaf_triangles.len() as u32;
             // Lists keep the order of ids from the root on.
-            sprout.leaf_triangles.extend(primitives.iter().map(|p| p.id));
+            subtree.leaf_triangles.extend(primitives.iter().map(|p| p.id));
             return KdNode::leaf(first, primitives.len() as u32);
         };
-        let mut upper = sprout.spare.pop().unwrap_or_default();
+        let mut upper = subtree.spare.pop().unwrap_or_default();
         self.divide(primitives, &split, &mut upper);
         let (place_lower, place_upper) = place.children(&split, primitives.len(), upper.len());
-        let pair = sprout.nodes.len();
-        sprout.nodes.extend([KdNode::leaf(0, 0); 2]);
-        sprout.nodes[pair] = self.grow_serially(primitives, &place_lower, sprout);
-        sprout.nodes[pair + 1] = self.grow_serially(&mut upper, &place_upper, sprout);
+        let pair = subtree.nodes.len();
+        subtree.nodes.extend([KdNode::leaf(0, 0); 2]);
+        subtree.nodes[pair] = self.grow_serially(primitives, &place_lower, subtree);
+        subtree.nodes[pair + 1] = self.grow_serially(&mut upper, &place_upper, subtree);
         upper.clear();
-        sprout.spare.push(upper);
+        subtree.spare.push(upper);
         KdNode::inner(split.axis as u32, split.position, pair as u32)
     }
 

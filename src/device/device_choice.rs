@@ -3,8 +3,8 @@
 
 use std::str::FromStr;
 
+use crate::device::open::DeviceChoice;
 use crate::error::{Error, Result, Setting};
-use crate::render::renderer::DeviceChoice;
 
 impl std::fmt::Display for DeviceChoice {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {

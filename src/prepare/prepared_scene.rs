@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! The scene as the kernels read it: flat arrays, ready for upload.
+//! The scene as the kernels read it: a kd-tree and flat arrays, ready for upload.
+
+use std::time::Instant;
 
 use glam::Vec3;
 
 use crate::error::{Error, Remedy, Result};
 use crate::layout::{self, *};
 use crate::monitor::Monitor;
-use crate::prepare::kdtree::KdTree;
-use crate::scene::{Scene, Surface};
+use crate::prepare::kdtree::{BuildOptions, KdTree};
+use crate::scene::{Scene, Surface, View};
 
 /// By which rules surfaces are shaded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -22,33 +24,36 @@ pub enum Shading {
 
 crate::names::named!(Shading of Shading { Full = "full", Anchor = "anchor" });
 
-/// Every array a ray needs (`SCENE_PARAMS` of `kernels/types.h`, without the frame's own parameters).
+/// A scene as the kernels read it: a kd-tree, flat arrays, textures, and the view that it is looked at from unless
+/// another one is set.
+///
+/// It is checked when it is made and cannot be changed afterwards. Threads and renderers may share one in an
+/// [`std::sync::Arc`]; it holds nothing of the [`Scene`] that it was made of.
 #[derive(Debug, Clone)]
-pub struct SceneBuffers {
+pub struct PreparedScene {
+    pub(crate) name: String,
+    pub(crate) view: View,
+    pub(crate) kdtree_ms: f64,
     /// The kd-tree with its leaf entries and box.
-    pub tree: KdTree,
-    /// Lights; never empty (a dark one stands in).
-    pub lights: Vec<layout::Light>,
-    /// Number of real lights.
-    pub light_count: u32,
+    pub(crate) tree: KdTree,
     /// Triangles for traversal.
-    pub triangles: Vec<Triangle>,
+    pub(crate) triangles: Vec<Triangle>,
     /// Triangles for shading.
-    pub triangle_shading: Vec<TriangleShading>,
+    pub(crate) triangle_shading: Vec<TriangleShading>,
     /// Materials.
-    pub materials: Vec<layout::Material>,
+    pub(crate) materials: Vec<layout::Material>,
     /// The material of each object.
-    pub object_materials: Vec<u32>,
+    pub(crate) object_materials: Vec<u32>,
     /// Where each texture's texels lie; never empty.
-    pub textures: Vec<layout::Texture>,
+    pub(crate) textures: Vec<layout::Texture>,
     /// Texels of all textures; never empty.
-    pub texels: Vec<u32>,
+    pub(crate) texels: Vec<u32>,
     /// sRGB tables.
-    pub tables: Vec<u32>,
+    pub(crate) tables: Vec<u32>,
     /// Shading rules that the arrays are made for.
-    pub shading: Shading,
+    pub(crate) shading: Shading,
     /// Offset of secondary and shadow rays, scene units.
-    pub epsilon: f32,
+    pub(crate) epsilon: f32,
 }
 
 /// Triangles that are flattened before it is asked whether the work is to end.
@@ -58,64 +63,29 @@ fn float4(v: Vec3, w: f32) -> [f32; 4] {
     [v.x, v.y, v.z, w]
 }
 
-impl SceneBuffers {
-    /// Flattens `scene` with its `tree`.
+impl PreparedScene {
+    /// Builds the kd-tree of `scene`, on all cores, and flattens everything for `shading`. `monitor` watches.
     ///
     /// # Errors
-    /// [`Error::LimitExceeded`] if the texels do not fit 32-bit offsets.
-    pub fn new(scene: &Scene, tree: KdTree, shading: Shading) -> Result<Self> {
-        SceneBuffers::watched(scene, tree, shading, &Monitor::default())
-    }
-
-    /// As [`SceneBuffers::new`]; `monitor` can end it.
-    ///
-    /// # Errors
-    /// As for [`SceneBuffers::new`]; [`Error::Cancelled`].
-    pub fn watched(scene: &Scene, tree: KdTree, shading: Shading, monitor: &Monitor) -> Result<Self> {
-        monitor.check()?;
+    /// [`Error::LimitExceeded`] if the texels do not fit 32-bit offsets, or memory for the tree cannot be had;
+    /// [`Error::Cancelled`].
+    pub fn new(scene: &Scene, shading: Shading, monitor: &Monitor) -> Result<Self> {
+        monitor.restart();
+        let started = Instant::now();
+        let part = monitor.part("kd-tree", 0.0, 1.0);
+        let tree = KdTree::build(scene.positions(), scene.triangles(), &BuildOptions::default(), &part)?;
+        let kdtree_ms = started.elapsed().as_secs_f64() * 1e3;
         let anchor = shading == Shading::Anchor;
         let (textures, texels) = flatten_textures(scene)?;
-        let mut lights: Vec<_> = scene
-            .view()
-            .lights
-            .iter()
-            .map(|l| layout::Light { position: float4(l.position, 0.0), intensity: float4(l.intensity, 0.0) })
-            .collect();
-        let light_count = lights.len() as u32;
-        if lights.is_empty() {
-            lights.push(layout::Light { position: [0.0; 4], intensity: [0.0; 4] });
-        }
-        let materials: Vec<_> = scene.materials().iter().map(|m| flatten_material(m, anchor)).collect();
+        let materials = scene.materials().iter().map(|m| flatten_material(m, anchor)).collect();
         let object_materials = scene.objects().iter().map(|o| o.material).collect();
-        let mut triangles = Vec::with_capacity(scene.triangles().len());
-        let mut triangle_shading = Vec::with_capacity(scene.triangles().len());
-        for (id, corners) in scene.triangles().iter().enumerate() {
-            if id % TRIANGLES_AT_ONCE == 0 {
-                monitor.check()?;
-            }
-            let [a, b, c] = corners.map(|i| scene.positions()[i as usize]);
-            let object = scene.triangle_objects()[id];
-            let material = scene.objects()[object as usize].material;
-            let flags = if anchor { 0 } else { triangle_flags(&scene.materials()[material as usize]) };
-            triangles.push(Triangle {
-                corner: float4(a, f32::from_bits(flags)),
-                edge1: float4(b - a, 0.0),
-                edge2: float4(c - a, 0.0),
-            });
-            let [t0, t1, t2] = scene.corner_texcoords()[id];
-            triangle_shading.push(TriangleShading {
-                normals: scene.corner_normals()[id],
-                object,
-                texcoords: [t0.x, t0.y, t1.x, t1.y, t2.x, t2.y],
-                material,
-                pad0: 0,
-            });
-        }
+        let (triangles, triangle_shading) = flatten_triangles(scene, anchor, monitor)?;
         let epsilon = if anchor { 1.0e-4 * diagonal(scene) } else { 1.0e-5 * scene.view().extent };
-        Ok(SceneBuffers {
+        Ok(PreparedScene {
+            name: scene.name().into(),
+            view: scene.view().clone(),
+            kdtree_ms,
             tree,
-            lights,
-            light_count,
             triangles,
             triangle_shading,
             materials,
@@ -126,6 +96,36 @@ impl SceneBuffers {
             shading,
             epsilon,
         })
+    }
+
+    /// The scene's name.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The view that came with the scene.
+    pub fn view(&self) -> &View {
+        &self.view
+    }
+
+    /// Number of triangles.
+    pub fn triangle_count(&self) -> usize {
+        self.triangles.len()
+    }
+
+    /// The kd-tree.
+    pub fn tree(&self) -> &KdTree {
+        &self.tree
+    }
+
+    /// The rules that surfaces are shaded by.
+    pub fn shading(&self) -> Shading {
+        self.shading
+    }
+
+    /// How long the kd-tree took to build, in milliseconds.
+    pub fn kdtree_ms(&self) -> f64 {
+        self.kdtree_ms
     }
 
     /// Bytes that an upload takes.
@@ -141,6 +141,43 @@ impl SceneBuffers {
             + of(size_of_val(&self.texels[..]))
             + of(size_of_val(&self.tables[..]))
     }
+}
+
+/// Lights as kernels read them.
+pub(crate) fn flatten_lights(lights: &[crate::scene::Light]) -> Vec<layout::Light> {
+    let flat = |l: &crate::scene::Light| layout::Light {
+        position: float4(l.position, 0.0),
+        intensity: float4(l.intensity, 0.0),
+    };
+    lights.iter().map(flat).collect()
+}
+
+fn flatten_triangles(scene: &Scene, anchor: bool, monitor: &Monitor) -> Result<(Vec<Triangle>, Vec<TriangleShading>)> {
+    let mut triangles = Vec::with_capacity(scene.triangles().len());
+    let mut triangle_shading = Vec::with_capacity(scene.triangles().len());
+    for (id, corners) in scene.triangles().iter().enumerate() {
+        if id % TRIANGLES_AT_ONCE == 0 {
+            monitor.check()?;
+        }
+        let [a, b, c] = corners.map(|i| scene.positions()[i as usize]);
+        let object = scene.triangle_objects()[id];
+        let material = scene.objects()[object as usize].material;
+        let flags = if anchor { 0 } else { triangle_flags(&scene.materials()[material as usize]) };
+        triangles.push(Triangle {
+            corner: float4(a, f32::from_bits(flags)),
+            edge1: float4(b - a, 0.0),
+            edge2: float4(c - a, 0.0),
+        });
+        let [t0, t1, t2] = scene.corner_texcoords()[id];
+        triangle_shading.push(TriangleShading {
+            normals: scene.corner_normals()[id],
+            object,
+            texcoords: [t0.x, t0.y, t1.x, t1.y, t2.x, t2.y],
+            material,
+            pad0: 0,
+        });
+    }
+    Ok((triangles, triangle_shading))
 }
 
 fn diagonal(scene: &Scene) -> f32 {

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Post-correction (step4): spreads from traced pixels to interpolated neighbours that disagree.
+
+use super::window::{Packing, SeedRanges, pack, trace_list};
+use crate::device::frame_memory::{FrameBuffer, most_listed_pixels};
+use crate::device::launch::Queue;
+use crate::device::stage::{Kernel, Stage};
+use crate::error::Result;
+use crate::layout::*;
+use crate::method::options::{Correction, RenderOptions};
+
+/// step4: spreads from the pixels listed so far; returns how many more pixels it fired at.
+pub(super) fn correct(queue: &mut Queue, options: &RenderOptions, seeds: &SeedRanges, listed: u32) -> Result<u32> {
+    let Some(step) = options.method.correction_params() else { return Ok(0) };
+    // A plan's windows are such that every list address is a 32-bit number.
+    let list_end = most_listed_pixels(queue.params()) as u32;
+    let step = StepParams { list_end, pixel_class: CLASS_CORRECTED, ..step };
+    match options.method.correction {
+        Correction::Off => Ok(0),
+        Correction::Converged { bridges, .. } => correct_converged(queue, &step, bridges, seeds, listed),
+        Correction::Sweeps(_) => correct_by_sweeps(queue, &step),
+    }
+}
+
+/// Rounds of mark, pack and trace, each from the pixels that the last one traced, until none is wanted.
+fn correct_converged(
+    queue: &mut Queue,
+    step: &StepParams,
+    bridges: bool,
+    seeds: &SeedRanges,
+    listed: u32,
+) -> Result<u32> {
+    let settle = StepParams { item_count: seeds.settled, flags: step.flags | STEP_SETTLE, ..*step };
+    trace_list(queue, Stage::Step4, &settle)?;
+    let mut list_offset = listed;
+    // Traced pixels come first: which edges and lines miss a neighbour, and where gaps are, is seen before any correction.
+    if seeds.first_time {
+        let first = StepParams { flags: step.flags | if bridges { STEP_BRIDGE } else { 0 }, ..*step };
+        list_offset += fire_from(queue, &first, seeds.len(), listed - seeds.len(), list_offset)?;
+    }
+    if seeds.fired > 0 {
+        let fire = StepParams { list_offset: seeds.settled, item_count: seeds.fired, ..*step };
+        trace_list(queue, Stage::Step4, &fire)?;
+        list_offset += fire_from(queue, step, seeds.settled, seeds.fired, list_offset)?;
+    }
+    let mut source_offset = listed;
+    while list_offset > source_offset {
+        let sources = list_offset - source_offset;
+        let followed = if sources <= TAIL_SOURCES && queue.prefers_few_launches() {
+            follow_tail(queue, step, source_offset, sources, list_offset)?
+        } else {
+            (source_offset, list_offset)
+        };
+        (source_offset, list_offset) = if followed != (source_offset, list_offset) {
+            followed
+        } else {
+            (list_offset, list_offset + fire_from(queue, step, source_offset, sources, list_offset)?)
+        };
+    }
+    Ok(list_offset - listed)
+}
+
+/// One round: the listed `sources` fire; what they hit is listed and traced. Returns how many pixels that is.
+fn fire_from(queue: &mut Queue, step: &StepParams, source_offset: u32, sources: u32, list_offset: u32) -> Result<u32> {
+    if sources == 0 {
+        return Ok(0);
+    }
+    let ways = if step.flags & STEP_BRIDGE != 0 { 5 } else { 4 };
+    let round = StepParams { source_offset, list_offset, item_count: ways * sources, ..*step };
+    queue.launch(Stage::Step4, Kernel::CorrectMark, &round)?;
+    let packing = Packing { stage: Stage::Step4, count: Kernel::CorrectCount, scatter: Kernel::CorrectScatter };
+    let count = pack(queue, &packing, &round)?;
+    trace_list(queue, Stage::Step4, &StepParams { item_count: count, ..round })?;
+    Ok(count)
+}
+
+/// Rounds of few sources in one launch; returns where the next round's sources begin and end.
+fn follow_tail(
+    queue: &mut Queue,
+    step: &StepParams,
+    source_offset: u32,
+    sources: u32,
+    list_offset: u32,
+) -> Result<(u32, u32)> {
+    let scan_group = queue.scan_group();
+    let tail = StepParams { source_offset, list_offset, item_count: 4 * sources, scan_group, ..*step };
+    queue.launch(Stage::Step4, Kernel::CorrectTail, &tail)?;
+    let sums = queue.read(FrameBuffer::Sums, 0..TAIL_SUM_ENDS as usize)?;
+    let sum = |at: u32| sums.get(at as usize).copied().unwrap_or(list_offset);
+    Ok((sum(TAIL_SUM_SOURCES), sum(TAIL_SUM_LIST)))
+}
+
+/// Each row there and back, then each column.
+fn correct_by_sweeps(queue: &mut Queue, step: &StepParams) -> Result<u32> {
+    let frame = *queue.params();
+    queue.launch(Stage::Step4, Kernel::CorrectSweep, &StepParams { step_x: 1, item_count: frame.height, ..*step })?;
+    queue.launch(Stage::Step4, Kernel::CorrectSweep, &StepParams { step_y: 1, item_count: frame.width, ..*step })?;
+    // A sweep lists nothing: its rays are counted from the classes.
+    let pitch = frame.plane_pitch as usize;
+    let at = PLANE_CLASS as usize * pitch;
+    let classes = queue.read(FrameBuffer::Attributes, at..at + pitch)?;
+    let pixels = (0..frame.height).flat_map(|y| (0..frame.width).map(move |x| (x, y)));
+    let is_corrected = |class: u32| matches!(class & CLASS_MASK, CLASS_CORRECTED | CLASS_CONFIRMED);
+    Ok(pixels.filter(|&(x, y)| is_corrected(classes[plane_index(&frame, x, y) as usize])).count() as u32)
+}

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! What of a frame is counted and kept.
+
+use crate::layout::{COUNTER_COUNT, FrameParams, PLANE_COUNT};
+
+/// What a frame keeps beside its picture.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Keep {
+    planes: u32,
+    /// Sums of the work counters.
+    pub counters: bool,
+}
+
+impl Keep {
+    /// Every attribute plane and every counter, to be read after the frame.
+    pub const EVERYTHING: Keep = Keep { planes: (1 << (PLANE_COUNT + COUNTER_COUNT)) - 1, counters: true };
+    /// The sums of the work counters.
+    pub const COUNTERS: Keep = Keep { planes: 0, counters: true };
+
+    /// These attribute planes (`PLANE_*`), to be read after the frame.
+    pub fn planes(planes: &[u32]) -> Keep {
+        Keep { planes: planes.iter().fold(0, |bits, plane| bits | 1 << plane), counters: false }
+    }
+
+    /// These counter planes (`COUNTER_*`), to be read after the frame, and the sums of all.
+    pub fn counter_planes(counters: &[u32]) -> Keep {
+        Keep { planes: counters.iter().fold(0, |bits, plane| bits | 1 << (PLANE_COUNT + plane)), counters: true }
+    }
+
+    /// Both.
+    pub fn and(self, other: Keep) -> Keep {
+        Keep { planes: self.planes | other.planes, counters: self.counters | other.counters }
+    }
+
+    /// Whether the plane is kept. Counter planes are numbered from [`PLANE_COUNT`] on.
+    pub(crate) fn has(self, plane: u32) -> bool {
+        self.planes >> plane & 1 != 0
+    }
+
+    /// Whether any plane is kept.
+    pub(crate) fn any_plane(self) -> bool {
+        self.planes != 0
+    }
+
+    /// Whether any attribute plane is kept.
+    pub(crate) fn attributes(self) -> bool {
+        self.planes & ((1 << PLANE_COUNT) - 1) != 0
+    }
+}
+
+/// How many pixels of a frame went which way.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct PixelCounts {
+    /// Traced in step1.
+    pub base: u64,
+    /// Traced in step2c and step3c.
+    pub traced: u64,
+    /// Rebuilt from their references, and left so.
+    pub interpolated: u64,
+    /// Traced in step4, changed or confirmed.
+    pub corrected: u64,
+}
+
+impl PixelCounts {
+    /// The counts of an adaptive frame's interior rows, of which so many pixels were traced and corrected.
+    pub fn new(frame: &FrameParams, traced: u64, corrected: u64) -> Self {
+        let rows = frame.interior_end - frame.interior_begin;
+        let base = u64::from(frame.phase_width) * u64::from(rows.div_ceil(frame.block));
+        let pixels = u64::from(frame.width) * u64::from(rows);
+        PixelCounts { base, traced, corrected, interpolated: pixels - base - traced - corrected }
+    }
+
+    /// Adds the counts of another window.
+    pub fn add(&mut self, other: &PixelCounts) {
+        self.base += other.base;
+        self.traced += other.traced;
+        self.interpolated += other.interpolated;
+        self.corrected += other.corrected;
+    }
+}
+
+/// Rays by kind.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct RayCounts {
+    /// From the eye.
+    pub primary: u64,
+    /// Towards lights.
+    pub shadow: u64,
+    /// Off mirrors and glass, total internal reflection included.
+    pub reflection: u64,
+    /// Through glass.
+    pub refraction: u64,
+}
+
+/// Work that does not depend on the device.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct WorkCounts {
+    /// Inner kd-tree nodes visited.
+    pub traversal_steps: u64,
+    /// Ray-triangle tests.
+    pub triangle_tests: u64,
+    /// Surface points shaded, interpolated pixels and points at the ends of secondary rays included.
+    pub shaded_pixels: u64,
+}
+
+impl WorkCounts {
+    /// Traversal steps and triangle tests together: what `work_speedup` compares.
+    pub fn traversal(&self) -> u64 {
+        self.traversal_steps + self.triangle_tests
+    }
+}

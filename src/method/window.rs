@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! A window of a frame, step by step, as the paper tells it: the same launches for every executor. A frame that fits into
+//! memory is one window; [`super::bands`] draws those that do not.
+
+use super::correction::correct;
+use crate::device::frame_memory::FrameBuffer;
+use crate::device::launch::Queue;
+use crate::device::stage::{Kernel, Stage};
+use crate::device::twin::pack::grid_items;
+use crate::error::Result;
+use crate::layout::*;
+use crate::method::options::RenderOptions;
+
+/// A class of adaptive pixels: its grid, and where the two references of each pixel lie.
+struct AdaptiveGrid {
+    stages: AdaptiveStages,
+    params: StepParams,
+}
+
+/// The stages that check, pack and trace a class of adaptive pixels.
+#[derive(Clone, Copy)]
+struct AdaptiveStages {
+    check: Stage,
+    pack: Stage,
+    trace: Stage,
+}
+
+const A1: AdaptiveStages = AdaptiveStages { check: Stage::Step2a, pack: Stage::Step2b, trace: Stage::Step2c };
+const A2: AdaptiveStages = AdaptiveStages { check: Stage::Step3a, pack: Stage::Step3b, trace: Stage::Step3c };
+
+/// A packing: the stage, and the kernels that count and scatter its items.
+pub(super) struct Packing {
+    pub stage: Stage,
+    pub count: Kernel,
+    pub scatter: Kernel,
+}
+
+/// Traces every pixel of a window: step1 at stride 1, by the same kernel. `store` keeps the attributes of all pixels.
+///
+/// # Errors
+/// Whatever the executor reports.
+pub fn trace_window(queue: &mut Queue, store: bool) -> Result<()> {
+    let flags = if store { STEP_STORE } else { 0 };
+    let step = StepParams { flags, pixel_class: CLASS_BASE, ..grid(queue.params(), (0, 0), (1, 1)) };
+    queue.launch(Stage::Step1, Kernel::Trace, &step)
+}
+
+/// The method: trace the base pixels, rebuild or trace the others, correct.
+///
+/// # Errors
+/// Whatever the executor reports.
+pub fn adaptive_window(
+    queue: &mut Queue,
+    options: &RenderOptions,
+    extent: f32,
+    seeds: &CorrectionSeeds,
+) -> Result<ListRanges> {
+    let frame = *queue.params();
+    let base = grid(&frame, (0, 0), (frame.block, frame.block));
+    let base = StepParams { flags: STEP_STORE, pixel_class: CLASS_BASE, ..base };
+    queue.launch(Stage::Step1, Kernel::Trace, &base)?;
+
+    let seeds = list_seeds(queue, seeds)?;
+    let mut listed = seeds.len();
+    let mut stride = frame.block;
+    while stride >= 2 {
+        for class in adaptive_grids(&frame, stride, options, extent) {
+            queue.launch(class.stages.check, Kernel::Check, &class.params)?;
+            let count = pack_grid(queue, &class, listed)?;
+            let list = StepParams { list_offset: listed, item_count: count, pixel_class: CLASS_TRACED, ..class.params };
+            trace_list(queue, class.stages.trace, &list)?;
+            listed += count;
+        }
+        stride /= 2;
+    }
+
+    let corrected = correct(queue, options, &seeds, listed)?;
+    Ok(ListRanges { seeds, traced_end: listed, corrected_end: listed + corrected })
+}
+
+/// What post-correction already knows of a window when it is drawn.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct CorrectionSeeds<'a> {
+    /// Pixels of the window that had their correction rays before, when it was drawn for the first time: now only
+    /// `fired` spreads. `None` when this is the first time.
+    pub settled: Option<&'a [u32]>,
+    /// Pixels of the interior at which pixels of other windows fire.
+    pub fired: &'a [u32],
+}
+
+/// The pixel addresses that drawing a window left in the list, in this order.
+#[derive(Debug, Clone, Copy)]
+pub struct ListRanges {
+    seeds: SeedRanges,
+    traced_end: u32,
+    corrected_end: u32,
+}
+
+impl ListRanges {
+    /// Traced in step2c and step3c.
+    pub fn traced(&self) -> std::ops::Range<usize> {
+        self.seeds.len() as usize..self.traced_end as usize
+    }
+
+    /// Fired at in step4, those of [`CorrectionSeeds`] not included; outside of the interior they got no ray.
+    pub fn corrected(&self) -> std::ops::Range<usize> {
+        self.traced_end as usize..self.corrected_end as usize
+    }
+}
+
+/// The list's first entries: the seeds.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct SeedRanges {
+    pub settled: u32,
+    pub fired: u32,
+    pub first_time: bool,
+}
+
+impl SeedRanges {
+    pub fn len(&self) -> u32 {
+        self.settled + self.fired
+    }
+}
+
+fn list_seeds(queue: &mut Queue, seeds: &CorrectionSeeds) -> Result<SeedRanges> {
+    let settled = seeds.settled.unwrap_or(&[]);
+    if !settled.is_empty() || !seeds.fired.is_empty() {
+        queue.write(FrameBuffer::List, &[settled, seeds.fired].concat())?;
+    }
+    Ok(SeedRanges {
+        settled: settled.len() as u32,
+        fired: seeds.fired.len() as u32,
+        first_time: seeds.settled.is_none(),
+    })
+}
+
+/// The grid of the pixels `origin + step * item` within the window, whose first row is a multiple of the block.
+fn grid(frame: &FrameParams, origin: (u32, u32), step: (u32, u32)) -> StepParams {
+    StepParams {
+        origin_x: origin.0,
+        origin_y: frame.window_begin + origin.1,
+        step_x: step.0,
+        step_y: step.1,
+        grid_width: frame.width.saturating_sub(origin.0).div_ceil(step.0),
+        grid_height: (frame.window_end - frame.window_begin).saturating_sub(origin.1).div_ceil(step.1),
+        ..bytemuck::Zeroable::zeroed()
+    }
+}
+
+/// The classes of adaptive pixels at one stride: A1 between two references in a row, A2 between two in a column; the odd
+/// columns of A2 by themselves where they may also use what the even ones found.
+fn adaptive_grids(frame: &FrameParams, stride: u32, options: &RenderOptions, extent: f32) -> Vec<AdaptiveGrid> {
+    let half = stride / 2;
+    let checks = |step| options.method.check_params(step, stride == 2, extent);
+    let step2 = checks(StepParams { reference_dx: half, ..grid(frame, (half, 0), (stride, stride)) });
+    let step3 = |left, width| checks(StepParams { reference_dy: half, ..grid(frame, (left, half), (width, stride)) });
+    let a1 = AdaptiveGrid { stages: A1, params: step2 };
+    let a2 = |params| AdaptiveGrid { stages: A2, params };
+    if options.method.checks.second_pairs {
+        let odd = step3(half, stride);
+        let odd = StepParams { flags: odd.flags | STEP_OTHER_PAIRS, ..odd };
+        vec![a1, a2(step3(0, stride)), a2(odd)]
+    } else {
+        vec![a1, a2(step3(0, half))]
+    }
+}
+
+/// Packs the pixels of a class that wait for rays behind the `list_offset` entries that the list holds already.
+fn pack_grid(queue: &mut Queue, class: &AdaptiveGrid, list_offset: u32) -> Result<u32> {
+    // Once for the pixels beside mirrors and glass, once for the others.
+    let item_count = 2 * grid_items(&class.params);
+    let packing = Packing { stage: class.stages.pack, count: Kernel::PackCount, scatter: Kernel::PackScatter };
+    pack(queue, &packing, &StepParams { item_count, list_offset, ..class.params })
+}
+
+/// Packs the wanted ones of `item_count` items by count, scan and scatter; returns how many there are.
+pub(super) fn pack(queue: &mut Queue, packing: &Packing, step: &StepParams) -> Result<u32> {
+    if step.item_count == 0 {
+        return Ok(0);
+    }
+    let step = StepParams { scan_group: queue.scan_group(), ..*step };
+    queue.launch(packing.stage, packing.count, &step)?;
+    let (mut level, mut sums_offset) = (step.item_count.div_ceil(32), 0);
+    loop {
+        queue.launch(packing.stage, Kernel::PackScan, &StepParams { item_count: level, sums_offset, ..step })?;
+        sums_offset += level;
+        level = level.div_ceil(step.scan_group);
+        if level == 1 {
+            break;
+        }
+    }
+    let count = queue.read_sum(sums_offset)?;
+    if count > 0 {
+        let step = StepParams { list_end: step.list_offset + count, ..step };
+        queue.launch(packing.stage, packing.scatter, &step)?;
+    }
+    Ok(count)
+}
+
+pub(super) fn trace_list(queue: &mut Queue, stage: Stage, step: &StepParams) -> Result<()> {
+    if step.item_count == 0 { Ok(()) } else { queue.launch(stage, Kernel::Trace, step) }
+}
