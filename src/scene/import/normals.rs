@@ -9,6 +9,7 @@
 
 use glam::Vec3;
 
+use super::options::filled;
 use crate::Result;
 use crate::math::{cross, dot, pack_normal};
 use crate::monitor::Monitor;
@@ -26,13 +27,16 @@ const MOST_PAIRED: usize = 128;
 /// After so many vertices it is asked whether the work is to end.
 const VERTICES_AT_ONCE: usize = 1024;
 
+/// What messages name.
+const PLACE: &str = "computing normals";
+
 /// Cells along each side of the octahedral grid of directions.
 const GRID: usize = 24;
 
 /// Computes the marked corners' normals (bits 0 to 2 of `missing`: the corner has none).
 ///
 /// # Errors
-/// [`crate::Error::Cancelled`].
+/// [`crate::Error::Cancelled`]; no memory.
 pub(super) fn compute(
     positions: &[Vec3],
     triangles: &[[u32; 3]],
@@ -45,7 +49,7 @@ pub(super) fn compute(
         return Ok(());
     }
     // Corners by vertex: `first[v]..first[v + 1]` of `corners` (triangle * 3 + corner, ascending).
-    let mut first = vec![0u32; positions.len() + 1];
+    let mut first = filled(0u32, positions.len() + 1, PLACE)?;
     for t in (0..triangles.len()).filter(|&t| wanted(t)) {
         for v in triangles[t] {
             first[v as usize + 1] += 1;
@@ -54,8 +58,9 @@ pub(super) fn compute(
     for v in 0..positions.len() {
         first[v + 1] += first[v];
     }
-    let mut fill = first.clone();
-    let mut corners = vec![0u32; first[positions.len()] as usize];
+    let mut fill = filled(0u32, first.len(), PLACE)?;
+    fill.copy_from_slice(&first);
+    let mut corners = filled(0u32, first[positions.len()] as usize, PLACE)?;
     for t in (0..triangles.len()).filter(|&t| wanted(t)) {
         for (k, v) in triangles[t].into_iter().enumerate() {
             corners[fill[v as usize] as usize] = (t * 3 + k) as u32;

@@ -26,12 +26,38 @@ impl Default for LoadOptions {
     }
 }
 
-/// Makes room for `more` values, at least 1024, or says that memory does not suffice for the file at `path`.
-pub(super) fn reserve<T>(values: &mut Vec<T>, more: usize, path: &Path) -> Result<()> {
-    values.try_reserve_exact(more.max(1024)).map_err(|_| no_memory(path, values.len() + more, size_of::<T>()))
+/// Makes room for `more` values, at least 1024, or says that memory does not suffice for what is at `place`.
+pub(super) fn reserve<T>(values: &mut Vec<T>, more: usize, place: impl AsRef<Path>) -> Result<()> {
+    values.try_reserve_exact(more.max(1024)).map_err(|_| no_memory(place.as_ref(), values.len() + more, size_of::<T>()))
 }
 
-fn no_memory(path: &Path, count: usize, size: usize) -> Error {
+/// `count` copies of a value, or says that memory does not suffice for what is at `place`.
+pub(super) fn filled<T: Clone>(value: T, count: usize, place: impl AsRef<Path>) -> Result<Vec<T>> {
+    let mut values = Vec::new();
+    values.try_reserve_exact(count).map_err(|_| no_memory(place.as_ref(), count, size_of::<T>()))?;
+    values.resize(count, value);
+    Ok(values)
+}
+
+fn no_memory(place: &Path, count: usize, size: usize) -> Error {
     let mib = (count as u64).saturating_mul(size as u64) >> 20;
-    Error::scene(path.display().to_string(), format!("not enough memory: {count} entries of a list take {mib} MiB"))
+    Error::scene(place.display().to_string(), format!("not enough memory: {count} entries of a list take {mib} MiB"))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn memory_that_cannot_be_had_is_an_error() {
+        assert_eq!(filled(7u8, 3, "x").unwrap(), [7; 3]);
+        let message = filled(0u32, usize::MAX / 8, "a.obj").unwrap_err().to_string();
+        assert!(message.starts_with("a.obj: not enough memory: "), "{message}");
+        let mut values = vec![1u64];
+        reserve(&mut values, 10, "x").unwrap();
+        assert!(values.capacity() > 1000);
+        assert!(reserve(&mut values, usize::MAX / 16, "a.obj").is_err());
+        assert_eq!(values, [1]);
+    }
 }
