@@ -94,6 +94,14 @@ pub enum Error {
         /// What would keep within the limit, each by itself; may be empty.
         remedies: &'static [Remedy],
     },
+    /// The system has no more memory.
+    #[error("not enough memory for {what}: {bytes} bytes")]
+    OutOfMemory {
+        /// What it is for.
+        what: String,
+        /// What was asked for, in bytes.
+        bytes: u64,
+    },
     /// A launch would reach beyond one of its buffers: a defect of this library, found before a device saw the launch.
     #[error("launch of `{kernel}` needs {wanted} {what}, there are {have}: a defect of Rarefy, please report it")]
     LaunchBeyondBuffer {

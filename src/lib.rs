@@ -29,6 +29,7 @@ pub mod error;
 pub mod files;
 pub mod layout;
 pub mod math;
+mod memory;
 pub mod method;
 pub mod monitor;
 mod names;

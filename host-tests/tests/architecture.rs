@@ -9,7 +9,7 @@ use rarefy_host_tests::command::root;
 
 /// The modules of the library in layers: a module may use those of its own layer and of the layers before.
 const LAYERS: &[&[&str]] = &[
-    &["error", "files", "math", "monitor", "names", "settings"],
+    &["error", "files", "memory", "math", "monitor", "names", "settings"],
     &["layout"],
     &["scene"],
     &["prepare"],

@@ -217,3 +217,60 @@ fn names_of_files_need_not_be_text() {
     wanted.sort();
     assert_eq!(entries(folder.path()), wanted);
 }
+
+/// Runs the command with so much address space.
+#[cfg(target_os = "linux")]
+fn run_within(folder: &Path, megabytes: u32, arguments: &str) -> Run {
+    let limited = format!("ulimit -v {} && exec \"$0\" \"$@\"", megabytes * 1024);
+    let mut command = Command::new("sh");
+    command.args(["-c", &limited]).arg(executable()).args(arguments.split_whitespace()).current_dir(folder);
+    let output = command.output().unwrap();
+    Run {
+        status: output.status.code().unwrap_or(-1),
+        stdout: String::from_utf8(output.stdout).unwrap(),
+        stderr: String::from_utf8(output.stderr).unwrap(),
+    }
+}
+
+/// A PNG whose pixels are all black: small as a file, large in memory.
+fn black_png(path: &Path, width: u32, height: u32) {
+    let mut file = std::io::BufWriter::new(File::create(path).unwrap());
+    let encoder = image::codecs::png::PngEncoder::new(&mut file);
+    let pixels = vec![0; width as usize * height as usize];
+    image::ImageEncoder::write_image(encoder, &pixels, width, height, image::ExtendedColorType::L8).unwrap();
+}
+
+#[test]
+fn a_small_file_of_a_huge_picture_is_refused_by_its_pixels() {
+    let folder = tempfile::tempdir().unwrap();
+    black_png(&folder.path().join("a.png"), 16_384, 4097);
+    assert!(folder.path().join("a.png").metadata().unwrap().len() < 1 << 20);
+    run(folder.path(), "diff a.png a.png -o b.png").expect_error(&["a.png", "16384x4097", "67108864 pixels"]);
+    assert_eq!(entries(folder.path()), ["a.png"]);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn memory_that_cannot_be_had_is_an_error() {
+    let folder = tempfile::tempdir().unwrap();
+    let wall = "render wall --device cpu -o out.png --size";
+    // The buffers of a frame, at once and in bands; what the host keeps of all bands.
+    run_within(folder.path(), 300, &format!("{wall} 4096x4096")).expect_error(&["not enough memory", "buffer"]);
+    run_within(folder.path(), 300, &format!("{wall} 8192x8192 --memory-budget 64"))
+        .expect_error(&["not enough memory", "samples"]);
+    // Pictures.
+    black_png(&folder.path().join("a.png"), 8192, 8192);
+    run_within(folder.path(), 200, "diff a.png a.png").expect_error(&["not enough memory", "a.png"]);
+    assert_eq!(entries(folder.path()), ["a.png"]);
+    // With enough of it all goes well.
+    run_within(folder.path(), 300, &format!("{wall} 64x64")).expect(0);
+}
+
+#[test]
+fn a_budget_that_is_too_small_is_named_as_it_was_given() {
+    let folder = tempfile::tempdir().unwrap();
+    for mib in [1, 5] {
+        run(folder.path(), &format!("render cafe --device cpu --size 64x64 --memory-budget {mib}"))
+            .expect_error(&["--memory-budget", &format!("allows {} KiB (", mib * 1024)]);
+    }
+}

@@ -186,7 +186,7 @@ pub struct CompareArgs {
 /// `rarefy diff`.
 #[derive(Debug, Args)]
 pub struct DiffArgs {
-    /// The reference picture.
+    /// The reference picture, PNG or JPEG, of at most 67,108,864 pixels (8192x8192).
     pub reference: PathBuf,
     /// The picture to judge.
     pub test: PathBuf,

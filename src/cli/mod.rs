@@ -32,6 +32,11 @@ pub fn run() -> ExitCode {
         Err(error) => return usage(&error),
     };
     let interrupt = Interrupt::catch();
+    // Made now, since a pool that cannot be made later is a panic.
+    if let Err(error) = rayon::ThreadPoolBuilder::new().build_global() {
+        output::complain(&format!("no threads can be started: {error}"));
+        return ExitCode::from(2);
+    }
     match dispatch(&cli.command, &interrupt) {
         Ok(good) => ExitCode::from(if good { 0 } else { 1 }),
         Err(Error::Cancelled) => interrupt::end(),

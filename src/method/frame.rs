@@ -48,7 +48,7 @@ pub fn draw_frame(
         extent,
         keep,
         counts: PixelCounts::default(),
-        collected: Collected::new(&inputs.params, kept_on_host),
+        collected: Collected::new(&inputs.params, kept_on_host)?,
         sums: CounterSums::default(),
     };
     if options.mode == Mode::Full {
@@ -57,7 +57,7 @@ pub fn draw_frame(
         }
     } else {
         frame.refuse_sweeps_in_bands()?;
-        let mut chains = OpenChains::new(&inputs.params);
+        let mut chains = OpenChains::new(&inputs.params)?;
         for rows in plan.bands() {
             frame.draw_band(queue, rows, &mut chains)?;
         }

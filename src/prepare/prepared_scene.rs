@@ -7,6 +7,7 @@ use glam::Vec3;
 
 use crate::error::{Error, Remedy, Result};
 use crate::layout::{self, *};
+use crate::memory;
 use crate::monitor::Monitor;
 use crate::prepare::kdtree::{BuildOptions, KdTree};
 use crate::scene::{Scene, Surface, View};
@@ -153,8 +154,8 @@ pub(crate) fn flatten_lights(lights: &[crate::scene::Light]) -> Vec<layout::Ligh
 }
 
 fn flatten_triangles(scene: &Scene, anchor: bool, monitor: &Monitor) -> Result<(Vec<Triangle>, Vec<TriangleShading>)> {
-    let mut triangles = Vec::with_capacity(scene.triangles().len());
-    let mut triangle_shading = Vec::with_capacity(scene.triangles().len());
+    let mut triangles = memory::with_room("the triangles", scene.triangles().len())?;
+    let mut triangle_shading = memory::with_room("the triangles", scene.triangles().len())?;
     for (id, corners) in scene.triangles().iter().enumerate() {
         if id % TRIANGLES_AT_ONCE == 0 {
             monitor.check()?;
@@ -242,7 +243,8 @@ fn flatten_textures(scene: &Scene) -> Result<(Vec<layout::Texture>, Vec<u32>)> {
     let total: u64 = scene.textures().iter().map(|t| t.texels.len() as u64).sum();
     check_texels(scene.name(), total, usize::MAX as u64)?;
     let mut textures = Vec::with_capacity(scene.textures().len().max(1));
-    let mut texels = Vec::with_capacity(total as usize);
+    // Below 2^30, as was checked.
+    let mut texels = memory::with_room("the textures", total as usize)?;
     for t in scene.textures() {
         textures.push(layout::Texture { offset: texels.len() as u32, width: t.width, height: t.height, pad0: 0 });
         texels.extend_from_slice(&t.texels);

@@ -5,6 +5,7 @@ use crate::device::executor::Executor;
 use crate::device::frame_memory::{FrameHandle, FrameInputs, FrameSizes};
 use crate::error::Result;
 use crate::layout::{COUNTER_COUNT, PLANE_COUNT};
+use crate::memory;
 use crate::method::bands::{Collected, read_frame_plane};
 use crate::method::counts::Keep;
 
@@ -101,7 +102,10 @@ impl Frames {
         match &self.last {
             Some(LastFrame { keep, planes }) if keep.has(plane) => match planes {
                 Planes::OnDevice(frame) => read_frame_plane(executor, frame, plane).map(Some),
-                Planes::OnHost(collected) => Ok(collected.planes.get(&plane).cloned()),
+                Planes::OnHost(collected) => {
+                    let kept = collected.planes.get(&plane);
+                    kept.map(|words| memory::collected("a plane", words.iter().copied())).transpose()
+                }
             },
             _ => Ok(None),
         }

@@ -15,14 +15,20 @@ use crate::{Error, Result, files};
 /// The longest side, in pixels, of a picture that is read or written.
 pub const MAX_SIDE: u32 = 16_384;
 
+/// The most pixels of a picture that is read: 8192x8192. Comparing two such pictures takes 1.5 GiB.
+pub const MAX_PIXELS: u64 = 1 << 26;
+
 /// The largest picture file that is read: 16 bits in each of four channels of the largest picture need as much.
-const MAX_FILE_BYTES: u64 = 2 << 30;
+const MAX_FILE_BYTES: u64 = 8 * MAX_PIXELS;
+
+/// What a decoder may hold beside the pixels.
+const BESIDE_PIXELS_BYTES: u64 = 64 << 20;
 
 /// Reads a PNG or JPEG file (told by its content, not its name) as `(width, height, pixels)`.
 ///
 /// Grey becomes equal red, green and blue; 16-bit channels are rounded to 8; transparency is dropped, so that alpha is
 /// 255 everywhere. Nothing is allocated for the pixels before the header's size is known to be at most [`MAX_SIDE`] on
-/// each side.
+/// each side and [`MAX_PIXELS`] in all.
 ///
 /// # Errors
 /// [`Error::Io`] if the file cannot be read, [`Error::Image`] if it is neither PNG nor JPEG or is damaged,
@@ -30,7 +36,11 @@ const MAX_FILE_BYTES: u64 = 2 << 30;
 pub fn read_rgb8(path: impl AsRef<Path>) -> Result<(u32, u32, Vec<u32>)> {
     let path = path.as_ref();
     let file = files::open(path, MAX_FILE_BYTES)?;
-    let reader = ImageReader::new(BufReader::new(file)).with_guessed_format().map_err(|e| Error::io(path, e))?;
+    let mut reader = ImageReader::new(BufReader::new(file)).with_guessed_format().map_err(|e| Error::io(path, e))?;
+    // For what lies beside the pixels, such as colour profiles, which are packed and may be bombs.
+    let mut limits = Limits::no_limits();
+    limits.max_alloc = Some(BESIDE_PIXELS_BYTES);
+    reader.limits(limits.clone());
     if reader.format().is_none() {
         return Err(broken(path, "this is neither a PNG nor a JPEG file"));
     }
@@ -39,7 +49,16 @@ pub fn read_rgb8(path: impl AsRef<Path>) -> Result<(u32, u32, Vec<u32>)> {
     if width > MAX_SIDE || height > MAX_SIDE {
         return Err(too_large(path, format!("{width}x{height} pixels")));
     }
-    let mut limits = Limits::no_limits();
+    let count = u64::from(width) * u64::from(height);
+    if count > MAX_PIXELS {
+        return Err(Error::LimitExceeded {
+            what: path.display().to_string(),
+            wanted: format!("{width}x{height}, {count} pixels"),
+            limit: "pixels of a picture".to_owned(),
+            allowed: format!("{MAX_PIXELS} pixels"),
+            remedies: &[Remedy::ScaledPictures],
+        });
+    }
     limits.max_image_width = Some(MAX_SIDE);
     limits.max_image_height = Some(MAX_SIDE);
     decoder.set_limits(limits).map_err(|e| decode_error(path, e))?;
@@ -49,7 +68,7 @@ pub fn read_rgb8(path: impl AsRef<Path>) -> Result<(u32, u32, Vec<u32>)> {
     // The length fits usize, as `reserved` has checked.
     bytes.resize(decoder.total_bytes() as usize, 0);
     decoder.read_image(&mut bytes).map_err(|e| decode_error(path, e))?;
-    let mut pixels: Vec<u32> = reserved(path, u64::from(width) * u64::from(height))?;
+    let mut pixels: Vec<u32> = reserved(path, count)?;
     match color {
         ColorType::L8 => pixels.extend(bytes.iter().map(|&l| word(l, l, l))),
         ColorType::La8 => pixels.extend(bytes.chunks_exact(2).map(|c| word(c[0], c[0], c[0]))),
@@ -99,7 +118,8 @@ pub fn write_png(path: impl AsRef<Path>, width: u32, height: u32, pixels: &[u32]
 fn reserved<T>(path: &Path, count: u64) -> Result<Vec<T>> {
     let mut values = Vec::new();
     let fits = usize::try_from(count).is_ok_and(|n| values.try_reserve_exact(n).is_ok());
-    if fits { Ok(values) } else { Err(broken(path, "not enough memory for a picture of this size")) }
+    let bytes = count.saturating_mul(size_of::<T>() as u64);
+    if fits { Ok(values) } else { Err(Error::OutOfMemory { what: path.display().to_string(), bytes }) }
 }
 
 fn word(red: u8, green: u8, blue: u8) -> u32 {

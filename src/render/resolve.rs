@@ -4,6 +4,7 @@
 use rayon::prelude::*;
 
 use crate::error::Result;
+use crate::memory;
 use crate::monitor::Monitor;
 
 /// Linear light of an sRGB byte, 0 to 65535.
@@ -26,14 +27,14 @@ fn srgb_byte(linear: u32) -> u32 {
 /// (sRGB words, row-major): each pixel is the mean of its samples in linear light.
 ///
 /// # Errors
-/// [`crate::Error::Cancelled`].
+/// [`crate::Error::Cancelled`], [`crate::Error::OutOfMemory`].
 pub fn resolve(words: &[u32], width: u32, height: u32, samples: u32, monitor: &Monitor) -> Result<Vec<u32>> {
     let linear = linear_table();
     let srgb: Vec<u8> = (0..=65535).map(|v| srgb_byte(v) as u8).collect();
     let (width, samples) = (width as usize, samples as usize);
     let row_words = width * samples;
     let count = (samples * samples) as u32;
-    let mut pixels = vec![0; width * height as usize];
+    let mut pixels = memory::filled("the picture", width * height as usize, 0)?;
     pixels.par_chunks_mut(width.max(1)).enumerate().try_for_each(|(y, row)| {
         monitor.check()?;
         let block_rows = &words[y * samples * row_words..][..samples * row_words];

@@ -3,7 +3,7 @@
 
 use serde::Serialize;
 
-use crate::{Error, Result};
+use crate::{Error, Result, memory};
 
 /// How many pixels are wrong, and how they lie together.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -33,7 +33,7 @@ pub fn wrong_pixels(reference: &[u32], test: &[u32], width: u32, height: u32) ->
             return Err(Error::argument(name, format!("{} values for {width}x{height} pixels", plane.len())));
         }
     }
-    let mut wrong: Vec<bool> = reference.iter().zip(test).map(|(a, b)| a != b).collect();
+    let mut wrong = memory::collected("a mark for each pixel", reference.iter().zip(test).map(|(a, b)| a != b))?;
     let mut result = WrongPixels::default();
     let (width, height) = (width as usize, height as usize);
     let mut pending = Vec::new();

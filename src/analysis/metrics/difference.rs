@@ -2,7 +2,7 @@
 //! The picture of what differs.
 
 use super::Rgb8;
-use crate::Result;
+use crate::{Result, memory};
 
 /// How much [`difference_picture`] amplifies by custom.
 pub const CUSTOMARY_GAIN: u32 = 10;
@@ -18,7 +18,7 @@ pub fn difference_picture(reference: Rgb8, test: Rgb8, gain: u32) -> Result<Vec<
         let channel = |c: usize| u32::from(a[c].abs_diff(b[c])).saturating_mul(gain).min(255) as u8;
         u32::from_le_bytes([channel(0), channel(1), channel(2), 255])
     };
-    Ok(reference.pixels().iter().zip(test.pixels()).map(pixel).collect())
+    memory::collected("the difference of the pictures", reference.pixels().iter().zip(test.pixels()).map(pixel))
 }
 
 #[cfg(test)]

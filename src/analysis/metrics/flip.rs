@@ -15,7 +15,7 @@ use std::f64::consts::PI;
 use rayon::prelude::*;
 
 use super::Rgb8;
-use crate::Result;
+use crate::{Result, memory};
 
 /// Rows that one task works on; memory per task is about 20 floats per pixel of band and halo.
 const BAND_ROWS: usize = 32;
@@ -76,7 +76,7 @@ pub fn flip_map(reference: Rgb8, test: Rgb8) -> Result<Vec<f32>> {
     reference.same_size(test)?;
     let observer = Observer::new();
     let width = reference.width() as usize;
-    let mut errors = vec![0.0f32; reference.pixels().len()];
+    let mut errors = memory::filled("the FLIP error of each pixel", reference.pixels().len(), 0.0f32)?;
     errors.par_chunks_mut(width * BAND_ROWS).enumerate().for_each(|(band, out)| {
         let rows = band * BAND_ROWS..band * BAND_ROWS + out.len() / width;
         let sides = [reference, test].map(|picture| Band::new(&observer, picture, rows.start, rows.end));

@@ -14,7 +14,7 @@ use opencl3::types::CL_BLOCKING;
 use super::codes;
 use super::door::{Door, Shared};
 use super::handle::Handle;
-use crate::{Error, Result};
+use crate::{Error, Result, memory};
 
 /// Larger transfers go in parts, between which they can be cancelled.
 const TRANSFER_BYTES: usize = 32 << 20;
@@ -163,7 +163,7 @@ impl Door {
         let count = range.end.saturating_sub(range.start);
         // Before the allocation, so that a wrong range is an error and not an exhausted memory.
         self.place("clEnqueueReadBuffer", buffer, range.start, count)?;
-        let mut values = vec![T::zeroed(); count];
+        let mut values = memory::filled("a copy of a buffer", count, T::zeroed())?;
         self.read_into(buffer, range.start, &mut values)?;
         Ok(values)
     }

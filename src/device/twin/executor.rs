@@ -188,7 +188,7 @@ impl Executor for TwinExecutor {
 
     fn read(&mut self, frame: &FrameHandle, buffer: FrameBuffer, range: Range<usize>) -> Result<Vec<u32>> {
         frame.sizes().check_range(buffer, &range)?;
-        Ok(words(&frame.memory::<TwinFrame>()?.buffers, buffer).to_vec(range))
+        words(&frame.memory::<TwinFrame>()?.buffers, buffer).to_vec(range)
     }
 
     fn write(&mut self, frame: &FrameHandle, buffer: FrameBuffer, new: &[u32]) -> Result<()> {

@@ -13,6 +13,7 @@ use crate::error::Result;
 use crate::layout::*;
 pub use crate::layout::{color_index, plane_index};
 use crate::math::{clamp, dot, pack_normal, pack_texcoord, unpack_normal, unpack_texcoord};
+use crate::memory;
 use crate::monitor::Monitor;
 
 /// A buffer of 32-bit words that items on any thread may read and write.
@@ -28,11 +29,10 @@ impl Words {
     /// A buffer of zeros. It takes a while to make a large one.
     ///
     /// # Errors
-    /// [`crate::Error::Cancelled`].
+    /// [`crate::Error::Cancelled`], [`crate::Error::OutOfMemory`].
     pub fn zeroed_unless_cancelled(len: usize, monitor: &Monitor) -> Result<Self> {
         const AT_ONCE: usize = 4 << 20;
-        let mut words = Vec::new();
-        words.reserve_exact(len);
+        let mut words = memory::with_room("a buffer of the frame", len)?;
         while words.len() < len {
             monitor.check()?;
             words.resize_with(len.min(words.len() + AT_ONCE), AtomicU32::default);
@@ -74,8 +74,11 @@ impl Words {
     }
 
     /// A copy of a range of words.
-    pub fn to_vec(&self, range: std::ops::Range<usize>) -> Vec<u32> {
-        self.0[range].iter().map(|w| w.load(Relaxed)).collect()
+    ///
+    /// # Errors
+    /// [`crate::Error::OutOfMemory`].
+    pub fn to_vec(&self, range: std::ops::Range<usize>) -> Result<Vec<u32>> {
+        memory::collected("a copy of a buffer", self.0[range].iter().map(|w| w.load(Relaxed)))
     }
 }
 

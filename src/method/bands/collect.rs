@@ -8,6 +8,7 @@ use crate::device::frame_memory::{FrameBuffer, FrameHandle};
 use crate::device::launch::Queue;
 use crate::error::Result;
 use crate::layout::*;
+use crate::memory;
 use crate::method::counts::{Keep, RayCounts, WorkCounts};
 use crate::method::options::Test;
 
@@ -66,11 +67,15 @@ pub struct Collected {
 
 impl Collected {
     /// Room for the colours of a frame, and for the planes of `keep`.
-    pub fn new(frame: &FrameParams, keep: Keep) -> Self {
+    ///
+    /// # Errors
+    /// [`crate::Error::OutOfMemory`].
+    pub fn new(frame: &FrameParams, keep: Keep) -> Result<Self> {
         let samples = frame.width as usize * frame.height as usize;
         let planes = (0..PLANE_COUNT + COUNTER_COUNT).filter(|&plane| keep.has(plane));
-        let planes = planes.map(|plane| (plane, vec![0; samples])).collect();
-        Collected { width: frame.width, colors: vec![0; samples], planes }
+        let room = || memory::filled("the samples of the frame", samples, 0);
+        let planes = planes.map(|plane| Ok((plane, room()?))).collect::<Result<_>>()?;
+        Ok(Collected { width: frame.width, colors: room()?, planes })
     }
 
     /// Takes over a window that has just been drawn.
@@ -139,7 +144,9 @@ pub fn read_frame_plane(executor: &mut dyn Executor, frame: &FrameHandle, plane:
     let (buffer, words) = plane_words(params, plane);
     let words = executor.read(frame, buffer, words)?;
     let pixels = (0..params.height).flat_map(|y| (0..params.width).map(move |x| (x, y)));
-    Ok(pixels.map(|(x, y)| words[plane_index(params, x, y) as usize]).collect())
+    let mut plane = memory::with_room("a plane", params.width as usize * params.height as usize)?;
+    plane.extend(pixels.map(|(x, y)| words[plane_index(params, x, y) as usize]));
+    Ok(plane)
 }
 
 /// Adds up the counters of the window in a queue's frame. `first_time`: failed tests count, too.

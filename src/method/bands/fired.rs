@@ -3,6 +3,9 @@
 
 use std::ops::Range;
 
+use crate::error::Result;
+use crate::memory;
+
 /// A set of pixel addresses (x in the low half word, y in the high one): one bit a sample.
 #[derive(Debug)]
 pub struct FiredPixels {
@@ -13,9 +16,13 @@ pub struct FiredPixels {
 
 impl FiredPixels {
     /// None yet, in a frame of `width` by `height` samples.
-    pub fn new(width: u32, height: u32) -> Self {
+    ///
+    /// # Errors
+    /// [`crate::Error::OutOfMemory`].
+    pub fn new(width: u32, height: u32) -> Result<Self> {
         let words_per_row = (width as usize).div_ceil(64);
-        FiredPixels { width: width as usize, words_per_row, words: vec![0; words_per_row * height as usize] }
+        let words = memory::filled("a bit for each sample", words_per_row * height as usize, 0)?;
+        Ok(FiredPixels { width: width as usize, words_per_row, words })
     }
 
     fn place(&self, pixel: u32) -> (usize, u64) {
@@ -57,11 +64,12 @@ impl FiredPixels {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used)]
     use super::*;
 
     #[test]
     fn what_was_inserted_is_found_again() {
-        let mut fired = FiredPixels::new(130, 3);
+        let mut fired = FiredPixels::new(130, 3).unwrap();
         let pixels = [0, 63, 64, 129, 1 << 16, 129 | 2 << 16];
         for pixel in pixels {
             assert!(!fired.contains(pixel));

@@ -20,6 +20,7 @@ pub use collect::{Collected, CounterSums, NewPixels, read_frame_plane, read_plan
 use fired::FiredPixels;
 pub use plan::Plan;
 
+use crate::error::Result;
 use crate::layout::FrameParams;
 
 /// The memory for a frame's buffers beside its scene, in bytes, and what the buffers must hold.
@@ -49,8 +50,11 @@ pub(super) struct OpenChains {
 
 impl OpenChains {
     /// None yet, in a frame of this size.
-    pub fn new(frame: &FrameParams) -> Self {
-        OpenChains { fired: FiredPixels::new(frame.width, frame.height), pending: BTreeSet::new() }
+    ///
+    /// # Errors
+    /// [`crate::Error::OutOfMemory`].
+    pub fn new(frame: &FrameParams) -> Result<Self> {
+        Ok(OpenChains { fired: FiredPixels::new(frame.width, frame.height)?, pending: BTreeSet::new() })
     }
 
     /// The pending pixels of `rows`, which are about to be traced.

@@ -127,12 +127,15 @@ impl FrameBudget {
         Error::LimitExceeded {
             what: format!("a band of {rows} rows of {} samples", frame.width),
             limit: Setting::MemoryBudget.path().into(),
-            wanted: format!("{} KiB beside the scene's {} KiB", wanted.div_ceil(1 << 10), self.scene_bytes >> 10),
-            allowed: format!(
-                "{} KiB in all, {} KiB in one buffer",
-                self.total_bytes >> 10,
-                self.allocation_bytes >> 10
+            wanted: format!(
+                "{} KiB beside the scene's {} KiB",
+                wanted.div_ceil(1 << 10),
+                self.scene_bytes.div_ceil(1 << 10)
             ),
+            allowed: match self.allocation_bytes {
+                u64::MAX => format!("{} KiB", self.total_bytes >> 10),
+                most => format!("{} KiB in all, {} KiB in one buffer", self.total_bytes >> 10, most >> 10),
+            },
             remedies: &[Remedy::LargerBudget, Remedy::FewerSamples, Remedy::SmallerPicture],
         }
     }
@@ -214,7 +217,7 @@ mod tests {
             let budget = FrameBudget {
                 total_bytes: limit(&mut random),
                 allocation_bytes: limit(&mut random),
-                scene_bytes: random.bits(),
+                scene_bytes: random.bits() % 1000,
                 attributes: block > 1 || round % 2 == 0,
                 counters: round % 3 == 0,
                 scan_group: 2 << (random.bits() % 9),

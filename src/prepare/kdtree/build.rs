@@ -5,6 +5,7 @@
 //! together in a fixed order: the bytes are the same for any number of threads.
 
 use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 use glam::Vec3;
 
@@ -13,7 +14,7 @@ use super::sah::{Costs, Scratch, Split, best_split};
 use super::{KdNode, KdTree, MAX_DEPTH};
 use crate::error::{Remedy, Setting};
 use crate::monitor::Monitor;
-use crate::{Error, Result};
+use crate::{Error, Result, memory};
 
 /// Cost of an inner node on a ray's way, the unit of [`INTERSECTION_COST`].
 const TRAVERSAL_COST: f32 = 1.0;
@@ -133,11 +134,12 @@ impl KdTree {
             serial: options.threads == Some(1),
             monitor: &monitor,
             done: Mutex::new(0.0),
+            starved: AtomicBool::new(false),
         };
         monitor.tell(0.0);
         let grow = || {
-            let primitives = builder.primitives();
-            builder.grow(primitives, Place { cell, depth: 0, budget, weight: 1.0 })
+            let primitives = builder.primitives()?;
+            Ok(builder.grow(primitives, Place { cell, depth: 0, budget, weight: 1.0 }))
         };
         let grown = match options.threads {
             None | Some(1) => grow(),
@@ -149,13 +151,17 @@ impl KdTree {
                 .install(grow)
             }
         };
-        // A cancelled tree is a stump.
+        // A tree that was cancelled, or ran out of memory, is a stump.
         monitor.check()?;
+        let grown = grown?;
+        if builder.starved.load(Relaxed) {
+            return Err(memory::out_of_memory::<Primitive>("the triangles of the kd-tree", triangles.len()));
+        }
         let mut tree =
             KdTree { nodes: Vec::new(), leaf_triangles: Vec::new(), bounds_min: cell.lo, bounds_max: cell.hi };
         let (nodes, entries) = grown.size();
-        tree.nodes.reserve_exact(nodes + 2);
-        tree.leaf_triangles.reserve_exact(entries);
+        memory::make_room("the nodes of the kd-tree", &mut tree.nodes, nodes + 2)?;
+        memory::make_room("the leaves of the kd-tree", &mut tree.leaf_triangles, entries)?;
         // The root, and the unused node that brings pairs to even indices.
         tree.nodes.extend([KdNode::leaf(0, 0); 2]);
         grown.place(0, &mut tree);
@@ -307,6 +313,8 @@ struct Builder<'a> {
     monitor: &'a Monitor,
     /// The shares of finished subtrees together.
     done: Mutex<f64>,
+    /// There was no memory for a part of the triangles: everything comes to an end.
+    starved: AtomicBool,
 }
 
 impl Builder<'_> {
@@ -319,15 +327,15 @@ impl Builder<'_> {
     }
 
     /// All triangles, or some of them if the work is to end.
-    fn primitives(&self) -> Vec<Primitive> {
-        let mut primitives = Vec::with_capacity(self.triangles.len());
+    fn primitives(&self) -> Result<Vec<Primitive>> {
+        let mut primitives = memory::with_room("the triangles of the kd-tree", self.triangles.len())?;
         for (first, chunk) in (0u32..).step_by(TRIANGLES_AT_ONCE).zip(self.triangles.chunks(TRIANGLES_AT_ONCE)) {
             if self.monitor.cancel().is_cancelled() {
                 break;
             }
             primitives.extend((first..).zip(chunk).map(|(id, t)| whole(id, self.corners(t), self.epsilon)));
         }
-        primitives
+        Ok(primitives)
     }
 
     /// Adds the share of a finished subtree.
@@ -341,10 +349,10 @@ impl Builder<'_> {
     /// Grows the tree over `primitives`, in parallel while there are many.
     fn grow(&self, mut primitives: Vec<Primitive>, place: Place) -> Grown {
         let mut scratch = Scratch::new();
+        let mut upper = Vec::new();
         if primitives.len() > FORK_ABOVE
-            && let Some(split) = self.choose(&primitives, &place, &mut scratch)
+            && let Some(split) = self.choose(&primitives, &place, &mut scratch, &mut upper)
         {
-            let mut upper = Vec::new();
             self.divide(&mut primitives, &split, &mut upper);
             let (place_lower, place_upper) = place.children(&split, primitives.len(), upper.len());
             let below = || self.grow(primitives, place_lower);
@@ -360,13 +368,14 @@ impl Builder<'_> {
 
     /// Grows the tree over `primitives` on this thread; depth first, so that a node's descendants lie close together.
     fn grow_serially(&self, primitives: &mut Vec<Primitive>, place: &Place, subtree: &mut SerialSubtree) -> KdNode {
-        let Some(split) = self.choose(primitives, place, &mut subtree.scratch) else {
+        let mut upper = subtree.spare.pop().unwrap_or_default();
+        let Some(split) = self.choose(primitives, place, &mut subtree.scratch, &mut upper) else {
+            subtree.spare.push(upper);
             let first = subtree.leaf_triangles.len() as u32;
             // Lists keep the order of ids from the root on.
             subtree.leaf_triangles.extend(primitives.iter().map(|p| p.id));
             return KdNode::leaf(first, primitives.len() as u32);
         };
-        let mut upper = subtree.spare.pop().unwrap_or_default();
         self.divide(primitives, &split, &mut upper);
         let (place_lower, place_upper) = place.children(&split, primitives.len(), upper.len());
         let pair = subtree.nodes.len();
@@ -379,19 +388,31 @@ impl Builder<'_> {
     }
 
     /// The plane that splits a node, or `None` for a leaf: nothing is cheaper, depth or memory are used up, or the work
-    /// is to end, which is seen once all has come to leaves.
-    fn choose(&self, primitives: &[Primitive], place: &Place, scratch: &mut Scratch) -> Option<Split> {
-        if place.depth >= self.max_depth || self.monitor.cancel().is_cancelled() {
+    /// is to end, which is seen once all has come to leaves. `upper` gets room for what lies above the plane.
+    fn choose(
+        &self,
+        primitives: &[Primitive],
+        place: &Place,
+        scratch: &mut Scratch,
+        upper: &mut Vec<Primitive>,
+    ) -> Option<Split> {
+        if place.depth >= self.max_depth || self.monitor.cancel().is_cancelled() || self.starved.load(Relaxed) {
             return None;
         }
         let split = best_split(primitives, &place.cell, &self.costs, scratch)?;
-        (PAIR_BYTES + 4 * (split.lower + split.upper) as u64 <= place.budget).then_some(split)
+        if PAIR_BYTES + 4 * (split.lower + split.upper) as u64 > place.budget {
+            return None;
+        }
+        if upper.try_reserve(split.upper).is_err() {
+            self.starved.store(true, Relaxed);
+            return None;
+        }
+        Some(split)
     }
 
     /// Keeps in `primitives` what lies below the plane and moves what lies above to `upper`, in order.
     fn divide(&self, primitives: &mut Vec<Primitive>, split: &Split, upper: &mut Vec<Primitive>) {
         let (axis, position) = (split.axis, split.position);
-        upper.reserve(split.upper);
         let mut kept = 0;
         for i in 0..primitives.len() {
             let primitive = primitives[i];
