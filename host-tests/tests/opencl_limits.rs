@@ -222,7 +222,7 @@ fn a_dump_of_the_devices_is_a_profile() {
     assert!(!found.devices.is_empty(), "{:?}", found.skipped);
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("devices.json");
-    std::fs::write(&path, serde_json::to_string_pretty(&found.to_json()).unwrap()).unwrap();
+    std::fs::write(&path, serde_json::to_string_pretty(&found.dump()).unwrap()).unwrap();
     for (index, device) in found.devices.iter().enumerate() {
         let numbered = folder.path().join(format!("devices.json#{index}"));
         let loaded = Profile::load(&numbered).unwrap();

@@ -1,139 +1,246 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Statistics as JSON objects: the same keys in every command.
+//! Statistics as JSON objects: the same keys in every command. A figure that does not exist is `null`; JSON has neither
+//! infinity nor NaN, which serde writes as `null` as well.
 
-use serde_json::{Map, Value, json};
+use serde::{Serialize, Serializer};
 
 use crate::analysis::compare::Comparison;
 use crate::analysis::wave_model::{StageCost, WAVES, WaveModel};
+use crate::device::executor::ExecutorInfo;
 use crate::device::stage::Stage;
+use crate::method::counts::{PixelCounts, RayCounts, WorkCounts};
 use crate::method::options::{Mode, RenderOptions, Test};
 use crate::render::frame::{Frame, FrameStats};
 use crate::render::renderer::{BuildTimes, Renderer};
 
 /// The statistics of one frame: what `rarefy render` writes.
-pub fn render_json(renderer: &mut Renderer, options: &RenderOptions, frame: &Frame, load_ms: f64) -> Value {
-    let key = if options.mode == Mode::Full { "full" } else { "adaptive" };
-    let mut object = head(renderer, options, load_ms);
-    object.insert(key.into(), frame_json(&frame.stats, options.mode));
-    object.insert("ray_traced_ratio".into(), json!(frame.stats.ray_traced_ratio()));
-    object.insert("ray_traced_ratio_with_correction".into(), json!(frame.stats.ray_traced_ratio_with_correction()));
-    object.insert("peak_device_bytes".into(), json!(renderer.peak_device_bytes()));
-    Value::Object(object)
+#[derive(Debug, Serialize)]
+pub struct RenderReport {
+    #[serde(flatten)]
+    head: Head,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    full: Option<FrameReport>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    adaptive: Option<FrameReport>,
+    ray_traced_ratio: f64,
+    ray_traced_ratio_with_correction: f64,
+    peak_device_bytes: u64,
 }
 
 /// A comparison: what `rarefy compare` writes.
-pub fn compare_json(renderer: &mut Renderer, options: &RenderOptions, comparison: &Comparison, load_ms: f64) -> Value {
-    let mut object = head(renderer, options, load_ms);
-    let quality = &comparison.quality;
-    let entries = [
-        ("frames", json!(comparison.frames)),
-        ("full", frame_json(&comparison.full, Mode::Full)),
-        ("adaptive", frame_json(&comparison.adaptive, Mode::Adaptive)),
-        ("ray_traced_ratio", json!(comparison.adaptive.ray_traced_ratio())),
-        ("ray_traced_ratio_with_correction", json!(comparison.adaptive.ray_traced_ratio_with_correction())),
-        ("speedup", number(comparison.speedup)),
-        ("work_speedup", number(comparison.work_speedup())),
-        ("efficiency", number(comparison.efficiency())),
-        ("correction_work_ratio", number(comparison.correction_work_ratio())),
-        ("packed_ray_work_ratio", comparison.packed_ray_work_ratio().map_or(Value::Null, number)),
-        ("psnr_db", quality.psnr_db.map_or(Value::Null, number)),
-        ("psnr_interpolated_db", quality.psnr_interpolated_db.map_or(Value::Null, number)),
-        ("ssim", number(quality.ssim)),
-        ("flip_mean", number(quality.flip_mean)),
-        ("flip_p99", number(quality.flip_p99)),
-        ("wrong_object_pixels", json!(comparison.wrong_object.count)),
-        ("wrong_object_largest_cluster", json!(comparison.wrong_object.largest_cluster)),
-        ("wrong_shadow_pixels", json!(comparison.wrong_shadow.count)),
-        ("peak_device_bytes", json!(renderer.peak_device_bytes())),
-    ];
-    object.extend(entries.map(|(key, value)| (key.to_owned(), value)));
-    Value::Object(object)
+#[derive(Debug, Serialize)]
+pub struct CompareReport {
+    #[serde(flatten)]
+    head: Head,
+    frames: u32,
+    full: FrameReport,
+    adaptive: FrameReport,
+    ray_traced_ratio: f64,
+    ray_traced_ratio_with_correction: f64,
+    speedup: f64,
+    work_speedup: f64,
+    efficiency: f64,
+    correction_work_ratio: f64,
+    packed_ray_work_ratio: Option<f64>,
+    psnr_db: Option<f64>,
+    psnr_interpolated_db: Option<f64>,
+    ssim: f64,
+    flip_mean: f64,
+    flip_p99: f64,
+    wrong_object_pixels: u64,
+    wrong_object_largest_cluster: u64,
+    wrong_shadow_pixels: u64,
+    peak_device_bytes: u64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    wave_model: Option<WaveReport>,
 }
 
-/// The wave model: what `rarefy compare` adds under `wave_model`.
-pub fn wave_model_json(model: &WaveModel) -> Value {
-    let by_wave = |value: &dyn Fn(usize) -> f64| -> Value {
-        WAVES.iter().enumerate().map(|(at, wave)| (wave.to_string(), number(value(at)))).collect::<Map<_, _>>().into()
-    };
-    let stages = |stages: &[StageCost]| -> Value {
-        let stage = |cost: &StageCost| {
-            let figures = json!({
-                "launches": cost.launches,
-                "round_trips": cost.round_trips,
-                "lane_steps": number(cost.lanes),
-                "wave_steps": by_wave(&|wave| cost.waves[wave]),
-                "divergence": by_wave(&|wave| cost.divergence(wave))
-            });
-            (cost.stage.name().to_owned(), figures)
-        };
-        stages.iter().map(stage).collect::<Map<_, _>>().into()
-    };
-    json!({
-        "speedup": by_wave(&|wave| model.speedup(wave)),
-        "full": stages(&model.full),
-        "adaptive": stages(&model.adaptive)
-    })
+/// What was drawn, on what.
+#[derive(Debug, Serialize)]
+struct Head {
+    scene: String,
+    triangles: usize,
+    width: u32,
+    height: u32,
+    samples_per_axis: u32,
+    block: u32,
+    device: DeviceReport,
+    build: BuildTimes,
 }
 
-fn number(value: f64) -> Value {
-    // JSON has no infinity or NaN: such a figure does not exist.
-    if value.is_finite() { json!(value) } else { Value::Null }
+#[derive(Debug, Serialize)]
+struct DeviceReport {
+    #[serde(flatten)]
+    info: ExecutorInfo,
+    /// Rays per work-item.
+    lanes: u32,
 }
 
-fn head(renderer: &mut Renderer, options: &RenderOptions, load_ms: f64) -> Map<String, Value> {
-    let info = renderer.info();
-    let BuildTimes { kdtree_ms, upload_ms, program_ms, .. } = renderer.build_times();
-    let entries = [
-        ("scene", json!(renderer.name())),
-        ("triangles", json!(renderer.triangle_count())),
-        ("width", json!(options.width)),
-        ("height", json!(options.height)),
-        ("samples_per_axis", json!(options.samples)),
-        ("block", json!(options.method.block)),
-        (
-            "device",
-            json!({"name": info.name, "version": info.version, "backend": info.backend, "profile": info.profile, "lanes": 1}),
-        ),
-        (
-            "build",
-            json!({"load_ms": load_ms, "kdtree_ms": kdtree_ms, "upload_ms": upload_ms, "program_ms": program_ms}),
-        ),
-    ];
-    entries.map(|(key, value)| (key.to_owned(), value)).into_iter().collect()
+#[derive(Debug, Serialize)]
+struct FrameReport {
+    frame_ms: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    rays: Option<RayCounts>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    work: Option<WorkCounts>,
+    #[serde(flatten)]
+    adaptive: Option<AdaptiveReport>,
 }
 
-fn frame_json(stats: &FrameStats, mode: Mode) -> Value {
-    let mut object = Map::new();
-    object.insert("frame_ms".into(), json!(stats.frame_ms));
-    if let Some(rays) = stats.rays {
-        let rays = json!({
-            "primary": rays.primary, "shadow": rays.shadow, "reflection": rays.reflection, "refraction": rays.refraction
-        });
-        object.insert("rays".into(), rays);
+/// What only adaptive frames have.
+#[derive(Debug, Serialize)]
+struct AdaptiveReport {
+    pixels: PixelCounts,
+    stages_ms: ByName<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    failed_tests: Option<ByName<u64>>,
+    fell_back: bool,
+}
+
+/// The wave model's part of a comparison.
+#[derive(Debug, Serialize)]
+struct WaveReport {
+    speedup: ByName<f64>,
+    full: ByName<StageReport>,
+    adaptive: ByName<StageReport>,
+}
+
+#[derive(Debug, Serialize)]
+struct StageReport {
+    launches: u32,
+    round_trips: u32,
+    lane_steps: f64,
+    wave_steps: ByName<f64>,
+    divergence: ByName<f64>,
+}
+
+/// Values by names that are data; an object in JSON, in this order.
+#[derive(Debug)]
+struct ByName<T>(Vec<(String, T)>);
+
+impl<T: Serialize> Serialize for ByName<T> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.0.iter().map(|(name, value)| (name, value)))
     }
-    if let Some(work) = stats.work {
-        let work = json!({
-            "traversal_steps": work.traversal_steps,
-            "triangle_tests": work.triangle_tests,
-            "shaded_pixels": work.shaded_pixels
-        });
-        object.insert("work".into(), work);
+}
+
+impl<T> ByName<T> {
+    fn new<N: ToString>(entries: impl IntoIterator<Item = (N, T)>) -> Self {
+        ByName(entries.into_iter().map(|(name, value)| (name.to_string(), value)).collect())
     }
-    if mode == Mode::Adaptive {
-        let p = &stats.pixels;
-        let pixels =
-            json!({"base": p.base, "traced": p.traced, "interpolated": p.interpolated, "corrected": p.corrected});
-        object.insert("pixels".into(), pixels);
-        let mut stages: Map<String, Value> =
-            Stage::ALL.iter().map(|s| (s.name().to_owned(), json!(stats.stages_ms[*s as usize]))).collect();
-        stages.insert("other".into(), json!(stats.other_ms()));
-        object.insert("stages_ms".into(), Value::Object(stages));
-        if let Some(failed) = stats.failed_tests {
-            let failed: Map<String, Value> =
-                Test::ALL.iter().zip(failed).map(|(t, n)| (t.name().to_owned(), json!(n))).collect();
-            object.insert("failed_tests".into(), Value::Object(failed));
+}
+
+impl RenderReport {
+    /// The report of a frame that `renderer` has just drawn of a scene that took `load_ms` to load.
+    pub fn new(renderer: &mut Renderer, options: &RenderOptions, frame: &Frame, load_ms: f64) -> Self {
+        let report = Some(FrameReport::new(&frame.stats, options.mode));
+        let (full, adaptive) = if options.mode == Mode::Full { (report, None) } else { (None, report) };
+        RenderReport {
+            head: Head::new(renderer, options, load_ms),
+            full,
+            adaptive,
+            ray_traced_ratio: frame.stats.ray_traced_ratio(),
+            ray_traced_ratio_with_correction: frame.stats.ray_traced_ratio_with_correction(),
+            peak_device_bytes: renderer.peak_device_bytes(),
         }
-        object.insert("fell_back".into(), json!(stats.fell_back));
     }
-    Value::Object(object)
+}
+
+impl CompareReport {
+    /// The report of a comparison that `renderer` has just made, and of the wave model if there is one.
+    pub fn new(
+        renderer: &mut Renderer,
+        options: &RenderOptions,
+        comparison: &Comparison,
+        waves: Option<&WaveModel>,
+        load_ms: f64,
+    ) -> Self {
+        let quality = &comparison.quality;
+        CompareReport {
+            head: Head::new(renderer, options, load_ms),
+            frames: comparison.frames,
+            full: FrameReport::new(&comparison.full, Mode::Full),
+            adaptive: FrameReport::new(&comparison.adaptive, Mode::Adaptive),
+            ray_traced_ratio: comparison.adaptive.ray_traced_ratio(),
+            ray_traced_ratio_with_correction: comparison.adaptive.ray_traced_ratio_with_correction(),
+            speedup: comparison.speedup,
+            work_speedup: comparison.work_speedup(),
+            efficiency: comparison.efficiency(),
+            correction_work_ratio: comparison.correction_work_ratio(),
+            packed_ray_work_ratio: comparison.packed_ray_work_ratio(),
+            psnr_db: quality.psnr_db,
+            psnr_interpolated_db: quality.psnr_interpolated_db,
+            ssim: quality.ssim,
+            flip_mean: quality.flip_mean,
+            flip_p99: quality.flip_p99,
+            wrong_object_pixels: comparison.wrong_object.count,
+            wrong_object_largest_cluster: comparison.wrong_object.largest_cluster,
+            wrong_shadow_pixels: comparison.wrong_shadow.count,
+            peak_device_bytes: renderer.peak_device_bytes(),
+            wave_model: waves.map(WaveReport::new),
+        }
+    }
+}
+
+impl Head {
+    fn new(renderer: &mut Renderer, options: &RenderOptions, load_ms: f64) -> Self {
+        Head {
+            scene: renderer.name().to_owned(),
+            triangles: renderer.triangle_count(),
+            width: options.width,
+            height: options.height,
+            samples_per_axis: options.samples,
+            block: options.method.block,
+            device: DeviceReport { info: renderer.info(), lanes: 1 },
+            build: BuildTimes { load_ms, ..renderer.build_times() },
+        }
+    }
+}
+
+impl FrameReport {
+    fn new(stats: &FrameStats, mode: Mode) -> Self {
+        let adaptive = || AdaptiveReport {
+            pixels: stats.pixels,
+            stages_ms: ByName::new(
+                Stage::ALL
+                    .map(|stage| (stage.name(), stats.stages_ms[stage as usize]))
+                    .into_iter()
+                    .chain([("other", stats.other_ms())]),
+            ),
+            failed_tests: stats
+                .failed_tests
+                .map(|failed| ByName::new(Test::ALL.into_iter().map(Test::name).zip(failed))),
+            fell_back: stats.fell_back,
+        };
+        FrameReport {
+            frame_ms: stats.frame_ms,
+            rays: stats.rays,
+            work: stats.work,
+            adaptive: (mode == Mode::Adaptive).then(adaptive),
+        }
+    }
+}
+
+impl WaveReport {
+    fn new(model: &WaveModel) -> Self {
+        let by_wave =
+            |value: &dyn Fn(usize) -> f64| ByName::new(WAVES.iter().enumerate().map(|(at, n)| (n, value(at))));
+        let stages = |stages: &[StageCost]| {
+            ByName::new(stages.iter().map(|cost| {
+                let report = StageReport {
+                    launches: cost.launches,
+                    round_trips: cost.round_trips,
+                    lane_steps: cost.lanes,
+                    wave_steps: by_wave(&|wave| cost.waves[wave]),
+                    divergence: by_wave(&|wave| cost.divergence(wave)),
+                };
+                (cost.stage.name(), report)
+            }))
+        };
+        WaveReport {
+            speedup: by_wave(&|wave| model.speedup(wave)),
+            full: stages(&model.full),
+            adaptive: stages(&model.adaptive),
+        }
+    }
 }

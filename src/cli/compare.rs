@@ -6,7 +6,7 @@ use std::path::Path;
 use rarefy::analysis::compare::{Comparison, compare};
 use rarefy::analysis::layers;
 use rarefy::analysis::metrics::{CUSTOMARY_GAIN, Rgb8, difference_picture};
-use rarefy::analysis::report;
+use rarefy::analysis::report::CompareReport;
 use rarefy::analysis::wave_model::wave_model;
 use rarefy::analysis::wave_model::{StageCost, WAVES, WaveModel};
 use rarefy::device::stage::Stage;
@@ -60,11 +60,8 @@ pub fn run(args: &CompareArgs, interrupt: &Interrupt) -> Result<()> {
     }
     match json {
         Some(path) => {
-            let mut report = report::compare_json(&mut renderer, &options, &comparison, load_ms);
-            if let (Some(model), Some(object)) = (&waves, report.as_object_mut()) {
-                object.insert("wave_model".into(), report::wave_model_json(model));
-            }
-            write_json(path, &report)
+            let waves = waves.as_ref();
+            write_json(path, &CompareReport::new(&mut renderer, &options, &comparison, waves, load_ms))
         }
         None => Ok(()),
     }

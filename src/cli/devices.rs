@@ -48,7 +48,7 @@ pub fn run(args: &DevicesArgs) -> Result<()> {
         say(json, &format!("skipped: {skipped}"));
     }
     match json {
-        Some(path) => write_json(path, &discovery.to_json()),
+        Some(path) => write_json(path, &discovery.dump()),
         None => Ok(()),
     }
 }

@@ -1,14 +1,25 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! `rarefy diff`.
 
+use rarefy::Result;
 use rarefy::analysis::metrics::{CUSTOMARY_GAIN, Rgb8, compare, difference_picture};
 use rarefy::render::picture::{read_rgb8, write_png};
-use rarefy::{Error, Result};
-use serde_json::json;
+use serde::Serialize;
 
 use super::args::DiffArgs;
 use super::output::{say, write_json};
 use super::outputs::Outputs;
+
+/// The figures of two pictures. There is no mask of interpolated pixels for two files.
+#[derive(Serialize)]
+struct DiffReport {
+    psnr_db: Option<f64>,
+    ssim: f64,
+    flip_mean: f64,
+    flip_p99: f64,
+    width: u32,
+    height: u32,
+}
 
 /// Measures two pictures; writes the difference and the figures.
 pub fn run(args: &DiffArgs) -> Result<()> {
@@ -35,16 +46,17 @@ pub fn run(args: &DiffArgs) -> Result<()> {
         ),
     );
     match json {
-        Some(path) => {
-            let mut value = serde_json::to_value(quality).map_err(|e| Error::argument("--json", e.to_string()))?;
-            if let Some(object) = value.as_object_mut() {
-                // There is no mask of interpolated pixels for two files.
-                object.remove("psnr_interpolated_db");
-                object.insert("width".into(), json!(width));
-                object.insert("height".into(), json!(height));
-            }
-            write_json(path, &value)
-        }
+        Some(path) => write_json(
+            path,
+            &DiffReport {
+                psnr_db: quality.psnr_db,
+                ssim: quality.ssim,
+                flip_mean: quality.flip_mean,
+                flip_p99: quality.flip_p99,
+                width,
+                height,
+            },
+        ),
         None => Ok(()),
     }
 }

@@ -5,13 +5,31 @@ use std::path::Path;
 
 use rarefy::Result;
 use rarefy::scene::doctor::{Severity, examine};
-use serde_json::json;
+use serde::Serialize;
 
 use super::args::DoctorArgs;
 use super::interrupt::Interrupt;
 use super::output::{say, write_json};
 use super::outputs::Outputs;
 use super::progress::load_scene;
+
+#[derive(Serialize)]
+struct DoctorReport<'a> {
+    scene: &'a str,
+    triangles: usize,
+    findings: Vec<FindingReport<'a>>,
+}
+
+#[derive(Serialize)]
+struct FindingReport<'a> {
+    severity: &'static str,
+    topic: &'a str,
+    message: &'a str,
+}
+
+fn word(severity: Severity) -> &'static str {
+    if severity == Severity::Warning { "warning" } else { "note" }
+}
 
 /// Prints what is odd about a scene.
 pub fn run(args: &DoctorArgs, interrupt: &Interrupt) -> Result<()> {
@@ -31,25 +49,21 @@ pub fn run(args: &DoctorArgs, interrupt: &Interrupt) -> Result<()> {
     );
     say(json, &summary);
     for finding in &findings {
-        let severity = if finding.severity == Severity::Warning { "warning" } else { "note" };
-        say(json, &format!("  {severity}: {}: {}", finding.topic, finding.message));
+        say(json, &format!("  {}: {}: {}", word(finding.severity), finding.topic, finding.message));
     }
     if findings.is_empty() {
         say(json, "  nothing odd");
     }
     match json {
         Some(path) => {
-            let findings: Vec<_> = findings
-                .iter()
-                .map(|f| {
-                    let warning = f.severity == Severity::Warning;
-                    json!({"severity": if warning { "warning" } else { "note" }, "topic": f.topic, "message": f.message})
-                })
-                .collect();
-            write_json(
-                path,
-                &json!({"scene": scene.name(), "triangles": scene.triangles().len(), "findings": findings}),
-            )
+            let findings = findings.iter().map(|f| FindingReport {
+                severity: word(f.severity),
+                topic: f.topic,
+                message: &f.message,
+            });
+            let report =
+                DoctorReport { scene: scene.name(), triangles: scene.triangles().len(), findings: findings.collect() };
+            write_json(path, &report)
         }
         None => Ok(()),
     }

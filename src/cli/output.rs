@@ -5,14 +5,15 @@ use std::io::Write;
 use std::path::Path;
 
 use rarefy::{Error, Result, files};
-use serde_json::Value;
+use serde::Serialize;
 
 /// What stands for standard output as the name of a file.
 pub const STANDARD_OUTPUT: &str = "-";
 
 /// Writes `value` to `path`; `-` is standard output.
-pub fn write_json(path: &Path, value: &Value) -> Result<()> {
-    let text = format!("{value:#}\n");
+pub fn write_json(path: &Path, value: &impl Serialize) -> Result<()> {
+    let mut text = serde_json::to_string_pretty(value).map_err(|e| Error::argument("--json", e.to_string()))?;
+    text.push('\n');
     if path == Path::new(STANDARD_OUTPUT) {
         let mut out = std::io::stdout().lock();
         return out.write_all(text.as_bytes()).and_then(|()| out.flush()).map_err(|e| Error::io("standard output", e));

@@ -5,7 +5,7 @@ use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 use rarefy::analysis::layers::{self, Layer};
-use rarefy::analysis::report;
+use rarefy::analysis::report::RenderReport;
 use rarefy::method::counts::Keep;
 use rarefy::method::options::Mode;
 use rarefy::render::picture::write_png;
@@ -73,7 +73,7 @@ pub fn run(args: &RenderArgs, interrupt: &Interrupt) -> Result<()> {
         say(json, "traced in full: the method did not pay in the frames before");
     }
     match json {
-        Some(path) => write_json(path, &report::render_json(&mut renderer, &options, &frame, load_ms)),
+        Some(path) => write_json(path, &RenderReport::new(&mut renderer, &options, &frame, load_ms)),
         None => Ok(()),
     }
 }

@@ -17,7 +17,7 @@ use crate::monitor::Monitor;
 use crate::prepare::PreparedScene;
 
 /// What the statistics say about the device of a frame.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
 pub struct ExecutorInfo {
     /// Device name.
     pub name: String,

@@ -49,7 +49,7 @@ impl Keep {
 }
 
 /// How many pixels of a frame went which way.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize)]
 pub struct PixelCounts {
     /// Traced in step1.
     pub base: u64,
@@ -80,7 +80,7 @@ impl PixelCounts {
 }
 
 /// Rays by kind.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize)]
 pub struct RayCounts {
     /// From the eye.
     pub primary: u64,
@@ -93,7 +93,7 @@ pub struct RayCounts {
 }
 
 /// Work that does not depend on the device.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize)]
 pub struct WorkCounts {
     /// Inner kd-tree nodes visited.
     pub traversal_steps: u64,

@@ -36,7 +36,7 @@ pub const DEFAULT_BUDGET_BYTES: u64 = 4 << 30;
 const SMALL_BUFFERS_BYTES: u64 = 64 << 10;
 
 /// How long it took to make ready, in milliseconds.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, serde::Serialize)]
 pub struct BuildTimes {
     /// Reading the scene's files.
     pub load_ms: f64,

@@ -10,7 +10,8 @@ use opencl3::platform::platform::{
     CL_PLATFORM_EXTENSIONS, CL_PLATFORM_NAME, CL_PLATFORM_PROFILE, CL_PLATFORM_VENDOR, CL_PLATFORM_VERSION,
     get_platform_data, get_platform_ids,
 };
-use serde_json::{Value, json};
+use serde::Serialize;
+use serde_json::Value;
 
 use super::limits::{Limits, parse_version};
 use super::{Kind, QUERIES, Query, codes, library};
@@ -95,10 +96,14 @@ pub struct Discovery {
 }
 
 impl Discovery {
-    /// Devices with their limits and choices, in the format of profiles; what was skipped.
-    pub fn to_json(&self) -> Value {
-        let devices: Vec<Value> = self.devices.iter().map(|device| device.profile.to_json()).collect();
-        json!({ "devices": devices, "skipped": self.skipped })
+    /// Devices with their limits and choices, in the format of profiles; what was skipped. For JSON.
+    pub fn dump(&self) -> impl Serialize + '_ {
+        #[derive(Serialize)]
+        struct Dump<'a> {
+            devices: Vec<&'a Profile>,
+            skipped: &'a [String],
+        }
+        Dump { devices: self.devices.iter().map(|device| &device.profile).collect(), skipped: &self.skipped }
     }
 }
 

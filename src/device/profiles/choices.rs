@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! What suits a device: shapes and variants that the pipeline would otherwise have to guess.
 
-use serde_json::{Map, Value};
+use serde::Serialize;
+use serde_json::Value;
 
-use super::{Certainty, Entry, bad, entry};
+use super::file::{self, Entries};
+use super::{Certainty, Entry, bad, checked};
 use crate::Result;
 pub use crate::layout::Traversal;
 
@@ -25,8 +27,10 @@ impl MemoryPath {
 }
 
 /// The choices of a profile.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+#[serde(transparent)]
 pub struct Choices {
+    #[serde(serialize_with = "file::as_object")]
     entries: Vec<(&'static str, Entry)>,
 }
 
@@ -98,20 +102,15 @@ impl Choices {
         Choices { entries }
     }
 
-    pub(super) fn parse(place: &str, map: &Map<String, Value>) -> Result<Self> {
+    pub(super) fn of_file(place: &str, file: Entries) -> Result<Self> {
         let mut entries = Vec::new();
-        for (key, value) in map {
-            let key = KEYS
-                .into_iter()
-                .find(|known| known == key)
+        for (key, entry) in file {
+            let known = KEYS.into_iter().find(|known| *known == key);
+            let known = known
                 .ok_or_else(|| bad(place, format!("unknown key `choices.{key}`; there are {}", KEYS.join(", "))))?;
-            entries.push((key, entry(place, &format!("choices.{key}"), value, |value| check(key, value))?));
+            entries.push((known, checked(place, &format!("choices.{key}"), entry, |value| check(known, value))?));
         }
         Ok(Choices { entries })
-    }
-
-    pub(super) fn to_json(&self) -> Value {
-        Value::Object(self.entries.iter().map(|(key, entry)| (key.to_string(), entry.to_json())).collect())
     }
 }
 

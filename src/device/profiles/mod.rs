@@ -6,11 +6,13 @@
 //! so a dump of a phone is a profile. A query that is absent or `null` sets no limit.
 
 mod choices;
+mod file;
 
 use std::ffi::OsStr;
 use std::path::Path;
 
-use serde_json::{Map, Value};
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
 
 pub use choices::{Choices, MemoryPath, Traversal};
 
@@ -19,56 +21,36 @@ use crate::error::Setting;
 use crate::{Error, Result, files};
 
 /// How well a value is known.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Certainty {
     /// Seen on the hardware, or in source code written for it.
+    #[serde(rename = "reported")]
     Reported,
     /// Stated by the vendor or by the standard for such a device.
+    #[serde(rename = "vendor doc")]
     VendorDoc,
     /// Derived from neighbours, from a minimum of the standard, or by arithmetic.
+    #[serde(rename = "inferred")]
     Inferred,
     /// No source was found.
+    #[serde(rename = "not found")]
     NotFound,
 }
 
-impl Certainty {
-    const ALL: [Certainty; 4] = [Self::Reported, Self::VendorDoc, Self::Inferred, Self::NotFound];
-
-    /// The word that stands for it in a profile.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Reported => "reported",
-            Self::VendorDoc => "vendor doc",
-            Self::Inferred => "inferred",
-            Self::NotFound => "not found",
-        }
-    }
-}
-
 /// One value of a profile with its evidence.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Entry {
     /// The value, of the type that the key asks for; `null` if unknown.
+    #[serde(deserialize_with = "file::present")]
     pub value: Value,
     /// How well it is known.
     pub certainty: Certainty,
     /// Where it comes from.
     pub source: String,
     /// A remark; may be empty.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
     pub note: String,
-}
-
-impl Entry {
-    fn to_json(&self) -> Value {
-        let mut map = Map::new();
-        map.insert("value".into(), self.value.clone());
-        map.insert("certainty".into(), self.certainty.word().into());
-        map.insert("source".into(), self.source.clone().into());
-        if !self.note.is_empty() {
-            map.insert("note".into(), self.note.clone().into());
-        }
-        Value::Object(map)
-    }
 }
 
 /// Facts about the hardware that no OpenCL query tells.
@@ -98,12 +80,15 @@ const EMBEDDED: [(&str, &str); 4] = [
 /// The longest profile that is read; a dump of 20 devices has a tenth of it.
 const MAX_FILE_BYTES: u64 = 4 << 20;
 
-/// What a device allows and what suits it.
-#[derive(Debug, Clone, PartialEq)]
+/// What a device allows and what suits it. Its JSON is the format of the files.
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Profile {
+    #[serde(skip)]
     name: String,
     device: String,
+    #[serde(serialize_with = "file::as_object")]
     limits: Vec<(&'static str, Entry)>,
+    #[serde(serialize_with = "file::as_object", skip_serializing_if = "Vec::is_empty")]
     hardware: Vec<(&'static str, Entry)>,
     choices: Choices,
 }
@@ -185,40 +170,19 @@ impl Profile {
     }
 
     fn from_value(place: &str, value: &Value) -> Result<Self> {
-        let map = value.as_object().ok_or_else(|| bad(place, "not a JSON object"))?;
-        let mut profile = Profile::empty(place, place);
-        for (key, value) in map {
-            match key.as_str() {
-                "device" | "status" | "compiled" => {
-                    let text = value.as_str().ok_or_else(|| bad(place, format!("`{key}` must be a text")))?;
-                    if key == "device" {
-                        profile.device = text.to_string();
-                    }
-                }
-                // Documents the words; the words themselves are fixed.
-                "certainty_values" => {}
-                "limits" => {
-                    for (key, value) in object(place, key, value)? {
-                        let at = format!("limits.{key}");
-                        let query = Query::find(key).ok_or_else(|| unknown(place, &at))?;
-                        profile.limits.push((query.key, entry(place, &at, value, |v| check_kind(query.kind, v))?));
-                    }
-                }
-                "hardware" => {
-                    for (key, value) in object(place, key, value)? {
-                        let at = format!("hardware.{key}");
-                        let (key, kind) =
-                            HARDWARE.iter().find(|(known, _)| known == key).ok_or_else(|| unknown(place, &at))?;
-                        profile.hardware.push((key, entry(place, &at, value, |v| check_hardware(*kind, v))?));
-                    }
-                }
-                "choices" => profile.choices = Choices::parse(place, object(place, key, value)?)?,
-                other => return Err(unknown(place, other)),
-            }
+        let file = file::parse(place, value)?;
+        let mut profile = Profile::empty(place, file.device.as_deref().unwrap_or(place));
+        for (key, entry) in file.limits {
+            let at = format!("limits.{key}");
+            let query = Query::find(&key).ok_or_else(|| unknown(place, &at))?;
+            profile.limits.push((query.key, checked(place, &at, entry, |v| check_kind(query.kind, v))?));
         }
-        if !map.contains_key("limits") {
-            return Err(bad(place, "has no `limits`, as a dump of a device has them"));
+        for (key, entry) in file.hardware {
+            let at = format!("hardware.{key}");
+            let (key, kind) = HARDWARE.iter().find(|(known, _)| *known == key).ok_or_else(|| unknown(place, &at))?;
+            profile.hardware.push((key, checked(place, &at, entry, |v| check_hardware(*kind, v))?));
         }
+        profile.choices = Choices::of_file(place, file.choices)?;
         Ok(profile)
     }
 
@@ -297,17 +261,7 @@ impl Profile {
 
     /// The profile as JSON, which [`Profile::load`] reads back.
     pub fn to_json(&self) -> Value {
-        let section = |entries: &[(&'static str, Entry)]| {
-            Value::Object(entries.iter().map(|(key, entry)| (key.to_string(), entry.to_json())).collect())
-        };
-        let mut map = Map::new();
-        map.insert("device".into(), self.device.clone().into());
-        map.insert("limits".into(), section(&self.limits));
-        if !self.hardware.is_empty() {
-            map.insert("hardware".into(), section(&self.hardware));
-        }
-        map.insert("choices".into(), self.choices.to_json());
-        Value::Object(map)
+        serde_json::to_value(self).expect("keys are texts, and values are JSON already")
     }
 }
 
@@ -319,37 +273,18 @@ fn unknown(place: &str, key: &str) -> Error {
     bad(place, format!("unknown key `{key}`"))
 }
 
-fn object<'a>(place: &str, key: &str, value: &'a Value) -> Result<&'a Map<String, Value>> {
-    value.as_object().ok_or_else(|| bad(place, format!("`{key}` must be an object")))
-}
-
-/// Parses `{value, certainty, source, note}`; `check` says what the value must be if it is not.
-pub(crate) fn entry(
+/// The entry at `key`, unless its value is not what it must be: `check` says what.
+fn checked(
     place: &str,
     key: &str,
-    json: &Value,
+    entry: Entry,
     check: impl Fn(&Value) -> std::result::Result<(), &'static str>,
 ) -> Result<Entry> {
-    let map = object(place, key, json)?;
-    if let Some(extra) = map.keys().find(|name| !["value", "certainty", "source", "note"].contains(&name.as_str())) {
-        return Err(unknown(place, &format!("{key}.{extra}")));
-    }
-    let text = |name: &str| match map.get(name) {
-        None => Ok(None),
-        Some(Value::String(text)) => Ok(Some(text.clone())),
-        Some(_) => Err(bad(place, format!("`{key}.{name}` must be a text"))),
-    };
-    let value = map.get("value").ok_or_else(|| bad(place, format!("`{key}` has no `value`")))?.clone();
+    let value = &entry.value;
     if !value.is_null() {
-        check(&value).map_err(|must| bad(place, format!("`{key}` is {value}, but must be {must}")))?;
+        check(value).map_err(|must| bad(place, format!("`{key}` is {value}, but must be {must}")))?;
     }
-    let word = text("certainty")?.ok_or_else(|| bad(place, format!("`{key}` has no `certainty`")))?;
-    let certainty = Certainty::ALL.into_iter().find(|certainty| certainty.word() == word).ok_or_else(|| {
-        let words = Certainty::ALL.map(Certainty::word).join(", ");
-        bad(place, format!("`{key}.certainty` is `{word}`, but must be one of: {words}"))
-    })?;
-    let source = text("source")?.ok_or_else(|| bad(place, format!("`{key}` has no `source`")))?;
-    Ok(Entry { value, certainty, source, note: text("note")?.unwrap_or_default() })
+    Ok(entry)
 }
 
 /// Whether a value has the type of its query; else what it must be.
@@ -456,14 +391,30 @@ mod tests {
         for (text, says) in [
             ("", "not a profile"),
             ("[]", "not a JSON object"),
-            ("{}", "has no `limits`"),
-            (r#"{"limits":[]}"#, "`limits` must be an object"),
-            (r#"{"limits":{},"colour":1}"#, "unknown key `colour`"),
-            (r#"{"limits":{"cl_device_nonsense":{}}}"#, "unknown key `limits.cl_device_nonsense`"),
-            (r#"{"limits":{"cl_device_name":{"value":"x","certainty":"sure","source":"-"}}}"#, "one of: reported"),
-            (r#"{"limits":{"cl_device_name":{"value":"x","certainty":"inferred"}}}"#, "no `source`"),
-            (r#"{"limits":{"cl_device_name":{"certainty":"inferred","source":"-"}}}"#, "no `value`"),
-            (r#"{"limits":{"cl_device_name":{"value":"x","certainty":"inferred","source":"-","x":1}}}"#, "name.x"),
+            ("{}", "missing field `limits`"),
+            (r#"{"limits":[]}"#, "p: limits: invalid type: sequence, expected an object"),
+            (r#"{"limits":{},"device":1}"#, "p: device: invalid type"),
+            (r#"{"limits":{},"colour":1}"#, "unknown field `colour`"),
+            (
+                r#"{"limits":{"cl_device_nonsense":{"value":1,"certainty":"inferred","source":"-"}}}"#,
+                "unknown key `limits.cl_device_nonsense`",
+            ),
+            (
+                r#"{"limits":{"cl_device_name":{"value":"x","certainty":"sure","source":"-"}}}"#,
+                "p: limits.cl_device_name.certainty: unknown variant `sure`, expected one of `reported`",
+            ),
+            (
+                r#"{"limits":{"cl_device_name":{"value":"x","certainty":"inferred"}}}"#,
+                "p: limits.cl_device_name: missing field `source`",
+            ),
+            (
+                r#"{"limits":{"cl_device_name":{"certainty":"inferred","source":"-"}}}"#,
+                "p: limits.cl_device_name: missing field `value`",
+            ),
+            (
+                r#"{"limits":{"cl_device_name":{"value":"x","certainty":"inferred","source":"-","x":1}}}"#,
+                "unknown field `x`",
+            ),
         ] {
             let message = Profile::from_json("p", text).unwrap_err().to_string();
             assert!(message.contains(says), "{text}: {message}");
