@@ -271,6 +271,6 @@ fn a_budget_that_is_too_small_is_named_as_it_was_given() {
     let folder = tempfile::tempdir().unwrap();
     for mib in [1, 5] {
         run(folder.path(), &format!("render cafe --device cpu --size 64x64 --memory-budget {mib}"))
-            .expect_error(&["--memory-budget", &format!("allows {} KiB (", mib * 1024)]);
+            .expect_error(&["--memory-budget", &format!("allows {} KiB in all (", mib * 1024)]);
     }
 }

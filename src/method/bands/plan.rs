@@ -133,7 +133,7 @@ impl FrameBudget {
                 self.scene_bytes.div_ceil(1 << 10)
             ),
             allowed: match self.allocation_bytes {
-                u64::MAX => format!("{} KiB", self.total_bytes >> 10),
+                u64::MAX => format!("{} KiB in all", self.total_bytes >> 10),
                 most => format!("{} KiB in all, {} KiB in one buffer", self.total_bytes >> 10, most >> 10),
             },
             remedies: &[Remedy::LargerBudget, Remedy::FewerSamples, Remedy::SmallerPicture],
