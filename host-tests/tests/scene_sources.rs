@@ -125,6 +125,18 @@ fn links_lead_a_confined_scene_nowhere() {
         let scene = scene::load(&folder, &Monitor::default()).unwrap();
         assert!(!scene.warnings().iter().any(|w| w.contains("MTL")), "{:?}", scene.warnings());
     }
+    // The scene's own two files.
+    fs::write(base.path().join("out.json"), VIEW).unwrap();
+    std::os::unix::fs::symlink("../out.json", folder.join("view.json")).unwrap();
+    scene::load(&folder, &Monitor::default()).unwrap();
+    let message = scene::load_with(&folder, &CONFINED, &Monitor::default()).unwrap_err().to_string();
+    assert!(message.contains("view.json: lies outside the scene's folder"), "{message}");
+    fs::remove_file(folder.join("view.json")).unwrap();
+    fs::rename(folder.join("scene.obj"), base.path().join("out.obj")).unwrap();
+    std::os::unix::fs::symlink("../out.obj", folder.join("scene.obj")).unwrap();
+    scene::load(&folder, &Monitor::default()).unwrap();
+    let message = scene::load_with(&folder, &CONFINED, &Monitor::default()).unwrap_err().to_string();
+    assert!(message.contains("scene.obj: lies outside the scene's folder"), "{message}");
 }
 
 #[test]

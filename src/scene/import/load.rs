@@ -43,6 +43,11 @@ pub fn load(path: &Path, monitor: &Monitor) -> Result<Scene> {
 pub fn load_with(path: &Path, options: &LoadOptions, monitor: &Monitor) -> Result<Scene> {
     let files = find_files(path)?;
     let source = Source::disk(files.obj.parent().unwrap_or(Path::new("")), options)?;
+    // Even these may be links.
+    if let Some(outside) = [Some(&files.obj), files.view.as_ref()].into_iter().flatten().find(|p| source.forbids(p)) {
+        let message = "lies outside the scene's folder, to which these options confine it";
+        return Err(Error::scene(outside.display().to_string(), message));
+    }
     load_files(files, &source, options, monitor)
 }
 
