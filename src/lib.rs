@@ -3,7 +3,7 @@
 //!
 //! It implements "Adaptive undersampling for efficient mobile ray tracing" (Kim et al., The Visual Computer 2016) with
 //! OpenCL 1.2 kernels and a CPU twin of every kernel. Data flows one way:
-//! scene files -> [`scene::Scene`] -> [`kdtree::KdTree`] -> device buffers -> stages -> frame -> PNG.
+//! scene files -> [`scene::Scene`] -> [`prepare::kdtree::KdTree`] -> device buffers -> stages -> frame -> PNG.
 //!
 //! ```no_run
 //! use rarefy::method::options::RenderOptions;

@@ -75,7 +75,7 @@ pub struct Preview<'a> {
     pub height: u32,
     /// The row of the preview at which `pixels` begin.
     pub first_row: u32,
-    /// Whole rows of sRGB words, as in [`crate::method::frame::Frame`].
+    /// Whole rows of sRGB words, as in [`crate::render::frame::Frame`].
     pub pixels: &'a [u32],
 }
 
