@@ -9,7 +9,7 @@ use glam::Vec3;
 use rarefy::Error;
 use rarefy::scene::builtin::mesh::Mesh;
 use rarefy::scene::builtin::{self, Model};
-use rarefy::scene::{Scene, Surface};
+use rarefy::scene::{LoadNotes, Scene, Surface};
 
 fn all() -> Vec<Model> {
     builtin::NAMES.iter().map(|name| builtin::generate(name).unwrap()).collect()
@@ -215,10 +215,15 @@ fn difference(a: &Scene, b: &Scene) -> Option<&'static str> {
         ("textures", a.textures() == b.textures()),
         ("view", a.view() == b.view()),
         ("warnings", a.warnings() == b.warnings()),
-        ("notes", a.notes() == b.notes()),
+        // Why materials became what they are, only files can say.
+        ("notes", without_reasons(a.notes()) == without_reasons(b.notes())),
     ]
     .into_iter()
     .find_map(|(what, same)| (!same).then_some(what))
+}
+
+fn without_reasons(notes: &LoadNotes) -> LoadNotes {
+    LoadNotes { materials: Vec::new(), ..notes.clone() }
 }
 
 #[test]

@@ -498,7 +498,7 @@ fn texture_coordinates_far_from_0_lose_nothing() {
 }
 
 #[test]
-fn surfaces_follow_illum_where_the_view_has_no_lists() {
+fn surfaces_follow_the_lists_of_the_view_else_the_keys() {
     let obj = format!("mtllib m.mtl\nusemtl a\n{TRIANGLE}");
     let kind = |mtl: &str, lists: &str| {
         let view = VIEW.replacen('{', &format!("{{{lists}"), 1);
@@ -507,19 +507,17 @@ fn surfaces_follow_illum_where_the_view_has_no_lists() {
         let scene = load(&files).unwrap();
         (scene.materials()[0].surface, scene.warnings().len())
     };
-    for (illum, surface) in [(2, Surface::Opaque), (3, Surface::Mirror), (5, Surface::Mirror), (4, Surface::Glass)] {
-        assert_eq!(kind(&format!("newmtl a\nillum {illum}\n"), ""), (surface, 0));
-    }
-    for illum in [6, 7, 9] {
-        assert_eq!(kind(&format!("newmtl a\nillum {illum}\n"), ""), (Surface::Glass, 0));
-    }
-    assert_eq!(kind("newmtl a\nillum 3\n", r#""mirror_materials": [],"#), (Surface::Opaque, 0));
-    assert_eq!(kind("newmtl a\nillum 7\n", r#""mirror_materials": [],"#), (Surface::Glass, 0));
+    let (mirror, glass) = ("newmtl a\nillum 3\nKs 1 1 1\n", "newmtl a\nillum 7\nd 0.1\nNi 1.5\n");
+    assert_eq!(kind(mirror, ""), (Surface::Mirror, 0));
+    assert_eq!(kind(glass, ""), (Surface::Glass, 0));
+    assert_eq!(kind(mirror, r#""mirror_materials": [],"#), (Surface::Opaque, 0));
+    assert_eq!(kind(glass, r#""mirror_materials": [],"#), (Surface::Glass, 0));
     let both = r#""glass_materials": ["a"], "thin_glass_materials": ["a"],"#;
     assert_eq!(kind("newmtl a\n", both), (Surface::ThinGlass, 0));
     let clash = r#""glass_materials": ["a"], "mirror_materials": ["a"],"#;
     assert_eq!(kind("newmtl a\n", clash), (Surface::Glass, 1));
-    assert_eq!(kind("newmtl a\nd 0.3\n", ""), (Surface::Opaque, 1));
+    assert_eq!(kind("newmtl a\nd 0.3\n", ""), (Surface::ThinGlass, 0));
+    assert_eq!(kind("newmtl a\nd 0.3\n", r#""glass_materials": [],"#), (Surface::Opaque, 1));
 }
 
 #[test]

@@ -59,6 +59,7 @@ const BREAKAGES: &[Breakage<SceneParts>] = &[
     (|s| s.materials[0].diffuse.x = f32::NAN, "made: materials[0] `paint`.diffuse: "),
     (|s| s.materials[0].specular.y = -0.5, "made: materials[0] `paint`.specular: "),
     (|s| s.materials[0].transmission.z = f32::INFINITY, "made: materials[0] `paint`.transmission: "),
+    (|s| s.materials[0].opacity = 1.5, "made: materials[0] `paint`.opacity: 1.5 is out of range"),
     (|s| s.materials[0].shininess = -1.0, "made: materials[0] `paint`.shininess: -1 is out of range"),
     (
         |s| s.materials[0].index_of_refraction = 0.5,

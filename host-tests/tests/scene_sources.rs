@@ -148,7 +148,7 @@ fn words_of_a_file_that_is_none_of_the_scenes_are_not_quoted() {
         let scene = load_disk(&[("scene/scene.obj", obj.as_bytes()), (inside, secret)], &LoadOptions::default());
         let all = format!("{:?} {:?}", scene.warnings(), scene.notes());
         assert_eq!(all.contains("swordfish"), quoted, "{all}");
-        assert!(quoted || all.contains("2 things are wrong; not told"), "{all}");
+        assert!(quoted || all.contains("3 things are wrong or not used; not told"), "{all}");
     }
 }
 

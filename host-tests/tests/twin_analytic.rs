@@ -185,6 +185,20 @@ fn a_thin_pane_bends_nothing_and_lets_fresnels_share_pass() {
 }
 
 #[test]
+fn a_film_shows_as_much_of_its_own_colour_as_it_is_opaque() {
+    for opacity in [0.0f32, 0.25, 0.8, 1.0] {
+        let mut builder = SceneBuilder::new("film");
+        builder.object(matte(RED));
+        builder.floor(Vec2::splat(-9.0), Vec2::splat(9.0), 0.0);
+        builder.object(Material { diffuse: GREEN, opacity, ..glass(Surface::ThinGlass, 1.0) });
+        builder.floor(Vec2::splat(-9.0), Vec2::splat(9.0), 1.0);
+        let stand = Stand::new(&builder.build(1.0), 1, 1, 8);
+        let look = stand.look(v(0.1, 3.0, 0.2), DOWN).unwrap();
+        assert_eq!((look.local, look.gcol), (GREEN * opacity, RED * (1.0 - opacity)), "{opacity}");
+    }
+}
+
+#[test]
 fn glass_reflects_and_transmits_by_fresnels_equations() {
     // A slab below a red ceiling and above a green floor, seen from between.
     let mut builder = SceneBuilder::new("slab");

@@ -51,3 +51,14 @@ pub fn warn_all(warnings: &[String]) {
         to_stderr(&format!("warning: and {} more; `rarefy doctor` lists all", warnings.len() - MOST));
     }
 }
+
+/// Prints to standard error what is good to know; long lists are cut.
+pub fn note_all(notices: &[String]) {
+    const MOST: usize = 6;
+    for notice in notices.iter().take(MOST) {
+        to_stderr(&format!("note: {notice}"));
+    }
+    if notices.len() > MOST {
+        to_stderr(&format!("note: and {} more; `rarefy doctor` lists all", notices.len() - MOST));
+    }
+}

@@ -10,11 +10,12 @@ use rarefy::device::open::DeviceOptions;
 use rarefy::monitor::{Event, Monitor};
 use rarefy::prepare::{PreparedScene, Shading};
 use rarefy::render::renderer::Renderer;
+use rarefy::scene::doctor::notices;
 use rarefy::scene::{self, builtin};
 use rarefy::{Result, Scene};
 
 use super::interrupt::Interrupt;
-use super::output::warn_all;
+use super::output::{note_all, warn_all};
 
 /// Nothing is shown before this much time has passed.
 const QUIET: Duration = Duration::from_secs(1);
@@ -106,16 +107,18 @@ pub fn make_renderer(
     options: &DeviceOptions,
     interrupt: &Interrupt,
 ) -> Result<(Renderer, f64)> {
-    let (renderer, load_ms, warnings) = with_bar(interrupt, |monitor| {
+    let (renderer, load_ms, warnings, notices) = with_bar(interrupt, |monitor| {
         let started = Instant::now();
         let scene = load(name, monitor)?;
         let load_ms = started.elapsed().as_secs_f64() * 1e3;
         let warnings = scene.warnings().to_vec();
+        let notices = notices(&scene);
         let prepared = Arc::new(PreparedScene::new(&scene, shading, monitor)?);
         drop(scene);
-        Ok((Renderer::new(prepared, options, monitor)?, load_ms, warnings))
+        Ok((Renderer::new(prepared, options, monitor)?, load_ms, warnings, notices))
     })?;
     warn_all(&warnings);
+    note_all(&notices);
     warn_all(renderer.notices());
     Ok((renderer, load_ms))
 }

@@ -204,11 +204,11 @@ fn flatten_material(m: &crate::scene::Material, anchor: bool) -> layout::Materia
         Surface::Glass => SURFACE_GLASS,
         Surface::ThinGlass => SURFACE_THIN_GLASS,
     };
-    // Own colour: Kd (1 - max Ks) on a mirror, none on glass.
+    // Own colour: Kd (1 - max Ks) on a mirror, as much of it as is opaque on glass.
     let (reflectance, own) = match (surface, anchor) {
         (SURFACE_MIRROR, true) => (Vec3::splat(0.8), 1.0 - 0.8),
         (SURFACE_MIRROR, false) => (m.specular, (1.0 - m.specular.max_element()).clamp(0.0, 1.0)),
-        (SURFACE_GLASS | SURFACE_THIN_GLASS, _) => (Vec3::ZERO, 0.0),
+        (SURFACE_GLASS | SURFACE_THIN_GLASS, _) => (Vec3::ZERO, m.opacity),
         _ => (Vec3::ZERO, 1.0),
     };
     let texture = |t: Option<u32>| if anchor { NO_TEXTURE } else { t.unwrap_or(NO_TEXTURE) };
@@ -216,7 +216,7 @@ fn flatten_material(m: &crate::scene::Material, anchor: bool) -> layout::Materia
         diffuse: float4(m.diffuse, m.shininess),
         specular: float4(m.specular, m.index_of_refraction),
         reflectance: float4(reflectance, own),
-        transmission: float4(m.transmission, 0.0),
+        transmission: float4(m.transmission * (1.0 - m.opacity), 0.0),
         surface,
         diffuse_texture: texture(m.diffuse_texture),
         cutout_texture: texture(m.cutout_texture),

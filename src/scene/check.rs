@@ -141,6 +141,9 @@ fn check_material(m: &Material, textures: usize) -> std::result::Result<(), Wron
         let message = format!("{} is out of range (1 to {MAX_INDEX_OF_REFRACTION})", m.index_of_refraction);
         return wrong("index_of_refraction", message);
     }
+    if !(0.0..=1.0).contains(&m.opacity) {
+        return wrong("opacity", format!("{} is out of range (0 to 1)", m.opacity));
+    }
     for (key, texture) in [("diffuse_texture", m.diffuse_texture), ("cutout_texture", m.cutout_texture)] {
         if let Some(t) = texture.filter(|&t| t as usize >= textures) {
             return wrong(key, format!("there is no texture {t}; the scene has {textures}"));

@@ -5,10 +5,13 @@
 
 use std::borrow::Cow;
 
+use super::coplanar::{self, Kind};
 use super::import::fit::Extents;
-use super::{Material, Scene};
+use super::{Material, Scene, told};
 use crate::error::printable;
 use crate::math::{cross, dot, unpack_normal};
+
+pub use super::told::notices;
 
 /// How much a finding matters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -25,7 +28,7 @@ pub struct Finding {
     /// How much it matters.
     pub severity: Severity,
     /// What it is about, in one or two words that do not change: `normals`, `texture coordinates`, `triangles`,
-    /// `extent`, `names`, `winding`, `materials`, `lights`, or `loading` for what was mended or left out then (missing
+    /// `overlaps`, `extent`, `names`, `winding`, `materials`, `keys`, `lights`, or `loading` for what was mended or left out then (missing
     /// textures and materials, degenerate triangles).
     pub topic: &'static str,
     /// One sentence with the numbers, and the remedy where there is one.
@@ -54,6 +57,8 @@ pub fn examine(scene: &Scene) -> Vec<Finding> {
     triangles(scene, &mut tell);
     extent(scene, &mut tell);
     winding(scene, &mut tell);
+    overlaps(scene, &mut tell);
+    told::examine(scene.notes(), &mut tell);
     for finding in &mut findings {
         if let Cow::Owned(escaped) = printable(&finding.message) {
             finding.message = escaped;
@@ -63,7 +68,7 @@ pub fn examine(scene: &Scene) -> Vec<Finding> {
     findings
 }
 
-type Tell<'a> = &'a mut dyn FnMut(Severity, &'static str, String);
+pub(super) type Tell<'a> = &'a mut dyn FnMut(Severity, &'static str, String);
 
 fn percent(part: usize, whole: usize) -> String {
     format!("{part} of {whole} ({:.1} %)", 100.0 * part as f64 / whole.max(1) as f64)
@@ -83,7 +88,11 @@ fn attributes(scene: &Scene, tell: Tell) {
     if notes.triangles_without_normals > 0 {
         let share = percent(notes.triangles_without_normals, total);
         let crease = super::import::normals::CREASE_DEGREES;
-        let message = format!("{share} triangles have no normals; computed with a crease angle of {crease} degrees");
+        let mut message =
+            format!("{share} triangles have no normals; computed with a crease angle of {crease} degrees");
+        if notes.triangles_smoothed_by_groups > 0 {
+            message += &format!(", {} of them by smoothing groups instead", notes.triangles_smoothed_by_groups);
+        }
         tell(Severity::Note, "normals", message);
     }
     if notes.triangles_without_texcoords > 0 {
@@ -254,6 +263,25 @@ fn winding(scene: &Scene, tell: Tell) {
     if crowded > 0 {
         let message = format!("{crowded} edges belong to more than two triangles (duplicate or inner faces)");
         tell(Severity::Note, "triangles", message);
+    }
+}
+
+/// Faces of different objects in one plane.
+fn overlaps(scene: &Scene, tell: Tell) {
+    let found = coplanar::overlaps(scene);
+    for (kind, count, objects) in found.pairs {
+        let at_least = if found.complete { "" } else { "at least " };
+        let [a, b] = objects.map(|o| &scene.objects()[o as usize]);
+        let pairs = format!("{at_least}{count} pairs of triangles (first in `{}` and `{}`)", a.name, b.name);
+        let (severity, what, remedy) = match kind {
+            Kind::TwoSided => (Severity::Warning, "are the two sides of one sheet", "keep one side"),
+            Kind::Contact => (Severity::Note, "touch face to face", "where both are seen, move them apart"),
+            Kind::OnGlass => (Severity::Warning, "touch, and one is glass", "lift the glass off, or sink it in"),
+            Kind::Duplicate => (Severity::Warning, "are the same twice", "delete one object"),
+            Kind::Decal => (Severity::Warning, "cover each other in one plane", "move the one to be seen to the front"),
+        };
+        let message = format!("{pairs} {what}: rounding decides which of them is seen, with noise; {remedy}");
+        tell(severity, "overlaps", message);
     }
 }
 

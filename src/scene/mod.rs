@@ -7,8 +7,10 @@
 
 pub mod builtin;
 mod check;
+mod coplanar;
 pub mod doctor;
 mod import;
+mod told;
 
 use glam::{Vec2, Vec3};
 
@@ -175,6 +177,8 @@ pub struct SceneParts {
 pub struct LoadNotes {
     /// Triangles with a corner whose normal was computed since the file has none.
     pub triangles_without_normals: usize,
+    /// Those of them that are smooth or flat as the file's smoothing groups say.
+    pub triangles_smoothed_by_groups: usize,
     /// Triangles in a textured material with a corner without texture coordinates.
     pub triangles_without_texcoords: usize,
     /// Triangles left out because they have no area.
@@ -185,6 +189,47 @@ pub struct LoadNotes {
     pub missing_textures: Vec<String>,
     /// Whether the view says how large the room is.
     pub extent_given: bool,
+    /// Keys of OBJ and MTL files that were not used, file by file.
+    pub unused_keys: Vec<UnusedKey>,
+    /// Materials on faces about which there is something to say: that are not plain opaque surfaces, or that were mended.
+    pub materials: Vec<MaterialNote>,
+}
+
+/// A key of an OBJ or MTL file that was not used.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct UnusedKey {
+    /// Path of the file.
+    pub file: String,
+    /// The key as it is written first, or a word for what has none.
+    pub key: String,
+    /// How often it occurs.
+    pub count: usize,
+    /// Where first, from 1.
+    pub first_line: usize,
+}
+
+/// What became of a material, and why.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct MaterialNote {
+    /// Its name.
+    pub material: String,
+    /// What it is.
+    pub surface: Surface,
+    /// Why; empty where an opaque surface is all that it asks for.
+    pub because: &'static str,
+    /// Why it has holes; empty where it has none.
+    pub cutout_because: &'static str,
+    /// The keys that were looked at, as the MTL file has them.
+    pub keys: String,
+    /// What was not taken as it is written.
+    pub mended: Vec<&'static str>,
+}
+
+impl MaterialNote {
+    /// Whether there is anything to say.
+    pub fn says_something(&self) -> bool {
+        !self.because.is_empty() || !self.cutout_because.is_empty() || !self.mended.is_empty()
+    }
 }
 
 /// One object: an OBJ object or group in one material.
@@ -225,6 +270,9 @@ pub struct Material {
     pub transmission: Vec3,
     /// `Ni`: index of refraction, at least 1.
     pub index_of_refraction: f32,
+    /// Share of its own colour that glass shows, from 0 (clear) to 1; it lets the rest through. Other surfaces show all
+    /// of theirs.
+    pub opacity: f32,
     /// How rays are treated.
     pub surface: Surface,
     /// `map_Kd`: index into [`SceneParts::textures`].
@@ -243,6 +291,7 @@ impl Default for Material {
             shininess: 1.0,
             transmission: Vec3::ONE,
             index_of_refraction: 1.5,
+            opacity: 0.0,
             surface: Surface::Opaque,
             diffuse_texture: None,
             cutout_texture: None,

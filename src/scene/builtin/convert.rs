@@ -41,6 +41,7 @@ pub fn scene_of(model: &Model) -> Result<Scene> {
             shininess: m.shininess,
             transmission: if passes { Vec3::from(m.transmission) } else { base.transmission },
             index_of_refraction: if passes { m.index_of_refraction } else { base.index_of_refraction },
+            opacity: base.opacity,
             surface: m.surface,
             diffuse_texture,
             cutout_texture,

@@ -7,6 +7,7 @@ use std::path::Path;
 use glam::{DVec2, Vec2, Vec3};
 
 use super::locate;
+use super::normals::Smoothing;
 use super::obj::{self, FAR_TEXCOORD, MISSING, ObjFile};
 use super::options::reserve;
 use super::source::Source;
@@ -43,6 +44,8 @@ pub(super) struct Geometry {
     pub objects: Vec<Object>,
     /// Bits 0 to 2 of each triangle: the corner has no normal yet.
     pub corners_without_normal: Vec<u8>,
+    /// The smoothing group of each triangle; empty if the file has none.
+    pub smoothing: Vec<Smoothing>,
     /// By object: triangles that lack a texture coordinate.
     pub without_texcoords: Vec<usize>,
     /// Triangles dropped because they have no area.
@@ -56,6 +59,21 @@ struct Faces<'a> {
     polygons_approximate: usize,
     first_approximate: Option<String>,
     polygons_degenerate: usize,
+    /// Faces so far, and the smoothing groups that are still to come.
+    count: u64,
+    smoothing: std::iter::Peekable<std::vec::IntoIter<(u64, Smoothing)>>,
+    has_smoothing: bool,
+    smoothing_now: Smoothing,
+}
+
+impl Faces<'_> {
+    /// Goes on to the next face.
+    fn begin(&mut self) {
+        while let Some((_, smoothing)) = self.smoothing.next_if(|&(first, _)| first <= self.count) {
+            self.smoothing_now = smoothing;
+        }
+        self.count += 1;
+    }
 }
 
 /// The materials of an OBJ file.
@@ -100,8 +118,19 @@ pub(super) fn assemble(
 
     let mut objects: HashMap<(String, u32), u32> = HashMap::new();
     let mut shifts: Vec<DVec2> = Vec::new();
-    let mut faces =
-        Faces { work: Work::new(monitor), polygons_approximate: 0, first_approximate: None, polygons_degenerate: 0 };
+    let mut faces = Faces {
+        work: Work::new(monitor),
+        polygons_approximate: 0,
+        first_approximate: None,
+        polygons_degenerate: 0,
+        count: 0,
+        has_smoothing: !file.smoothing.is_empty(),
+        smoothing: file.smoothing.into_iter().peekable(),
+        smoothing_now: Smoothing::default(),
+    };
+    if faces.has_smoothing {
+        reserve(&mut geometry.smoothing, total, path)?;
+    }
     let mut welder = Welder::default();
     let mut models = file.models.into_iter().peekable();
     while let Some(model) = models.next() {
@@ -245,10 +274,11 @@ fn add_faces(g: &mut Geometry, faces: &mut Faces, shape: &Shape, monitor: &Monit
         if face % FACES_AT_ONCE == 0 {
             monitor.check()?;
         }
+        faces.begin();
         let arity = mesh.face_arities.get(face).map_or(3, |&n| n as usize);
         let vertices = &mesh.indices[first..first + arity];
         if arity == 3 {
-            add_triangle(g, shape, [first, first + 1, first + 2]);
+            add_triangle(g, faces, shape, [first, first + 1, first + 2]);
         } else {
             corners.clear();
             corners.extend(vertices.iter().map(|&v| g.positions[indices[v as usize] as usize]));
@@ -262,7 +292,7 @@ fn add_faces(g: &mut Geometry, faces: &mut Faces, shape: &Shape, monitor: &Monit
                 }
             }
             for t in &split {
-                add_triangle(g, shape, t.map(|c| first + c as usize));
+                add_triangle(g, faces, shape, t.map(|c| first + c as usize));
             }
         }
         first += arity;
@@ -271,7 +301,7 @@ fn add_faces(g: &mut Geometry, faces: &mut Faces, shape: &Shape, monitor: &Monit
 }
 
 /// Adds one triangle, unless it has no area. `at`: its corners' places in the mesh's index lists.
-fn add_triangle(g: &mut Geometry, shape: &Shape, at: [usize; 3]) {
+fn add_triangle(g: &mut Geometry, faces: &Faces, shape: &Shape, at: [usize; 3]) {
     let &Shape { mesh, indices, texcoords: all, object, map, shift } = shape;
     let triangle = at.map(|c| indices[mesh.indices[c] as usize]);
     if !check::has_area(triangle.map(|v| g.positions[v as usize])) {
@@ -300,6 +330,9 @@ fn add_triangle(g: &mut Geometry, shape: &Shape, at: [usize; 3]) {
     g.corner_texcoords.push(texcoords);
     g.triangle_objects.push(object);
     g.corners_without_normal.push(without);
+    if faces.has_smoothing {
+        g.smoothing.push(faces.smoothing_now);
+    }
     g.without_texcoords[object as usize] += usize::from(lacks_texcoord);
 }
 

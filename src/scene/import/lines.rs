@@ -177,6 +177,21 @@ pub(super) fn keyword(line: &[u8]) -> (&[u8], &[u8]) {
     (&line[..end], line[end..].trim_ascii())
 }
 
+/// OBJ keys with more letters than this are unknown.
+pub(super) const LONGEST_KEY: usize = 8;
+
+/// `key` in lower case, in `buffer`; a longer one than any known as it is. (Exporters differ in letter case.)
+pub(super) fn lower_case<'a>(key: &'a [u8], buffer: &'a mut [u8; LONGEST_KEY]) -> &'a [u8] {
+    match buffer.get_mut(..key.len()) {
+        Some(lower) => {
+            lower.copy_from_slice(key);
+            lower.make_ascii_lowercase();
+            lower
+        }
+        None => key,
+    }
+}
+
 /// A line of numbers without the comment that may follow them.
 pub(super) fn without_comment(line: &[u8]) -> &[u8] {
     match line.iter().position(|&b| b == b'#') {

@@ -5,22 +5,21 @@ use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
-use glam::Vec3;
-
 use super::LoadOptions;
 use super::assemble::{self, Geometry, TexcoordMap};
 use super::find::{Finder, Found, without_comment_and_quotes};
 use super::fit::{Extents, fitted_camera, fitted_light};
+use super::material::{Finish, Kinds};
 use super::mtl::{self, MtlMaterial};
-use super::normals;
+use super::normals::{self, Smoothing};
 use super::notices::Notices;
 use super::obj::{self, ObjFile};
 use super::source::{FileSource, Source};
-use super::texture::{Role, Textures};
+use super::texture::{Alpha, Role, Textures};
 use super::view::{self, ViewFile};
 use crate::error::printable;
 use crate::monitor::Monitor;
-use crate::scene::{LoadNotes, Material, Scene, SceneParts, Surface, Texture, View};
+use crate::scene::{LoadNotes, Material, MaterialNote, Scene, SceneParts, Texture, UnusedKey, View};
 use crate::{Error, Result};
 
 /// Loads the scene at `path`: a folder with `scene.obj` (and `view.json`), or an OBJ file (`view.json` beside it is
@@ -83,6 +82,7 @@ fn load_files(files: Files, source: &Source, options: &LoadOptions, monitor: &Mo
     let file = obj::read(source, &obj, options, &monitor.part("reading geometry", 0.0, 0.6))?;
     let mut warnings = file.warnings.clone();
     let duplicate_names = file.reopened_groups.clone();
+    let mut unused_keys = file.unused_keys.clone();
 
     let part = monitor.part("reading materials", 0.6, 0.8);
     let palette = Palette::load(source, &obj, &file, &view_file, view.as_deref(), options, &mut warnings, &part)?;
@@ -104,14 +104,23 @@ fn load_files(files: Files, source: &Source, options: &LoadOptions, monitor: &Mo
 
     let part = monitor.part("computing normals", 0.9, 1.0);
     let missing = std::mem::take(&mut geometry.corners_without_normal);
-    normals::compute(&geometry.positions, &geometry.triangles, &missing, &mut geometry.corner_normals, &part)?;
+    let smoothing = std::mem::take(&mut geometry.smoothing);
+    let (positions, triangles) = (&geometry.positions, &geometry.triangles);
+    normals::compute(positions, triangles, &missing, &smoothing, &mut geometry.corner_normals, &part)?;
+    let follows_groups = |(&missing, &s): (&u8, &Smoothing)| missing != 0 && s != Smoothing::Unsaid;
     let notes = LoadNotes {
         triangles_without_normals: missing.iter().filter(|&&m| m != 0).count(),
+        triangles_smoothed_by_groups: missing.iter().zip(&smoothing).filter(|&both| follows_groups(both)).count(),
         triangles_without_texcoords: textured_without_texcoords(&geometry, &palette.materials),
         dropped_triangles: geometry.dropped,
         duplicate_names,
         missing_textures: palette.missing_textures,
         extent_given: view_file.extent.is_some(),
+        unused_keys: {
+            unused_keys.extend(palette.unused_keys);
+            unused_keys
+        },
+        materials: palette.notes,
     };
     drop(missing);
 
@@ -187,6 +196,8 @@ struct Palette {
     material_of: Vec<u32>,
     texcoord_maps: Vec<TexcoordMap>,
     default_material: u32,
+    unused_keys: Vec<UnusedKey>,
+    notes: Vec<MaterialNote>,
 }
 
 impl Palette {
@@ -202,15 +213,19 @@ impl Palette {
         monitor: &Monitor,
     ) -> Result<Self> {
         let mut finder = Finder::new(source, obj, monitor);
-        let defined = read_libraries(&mut finder, obj, file, warnings)?;
+        let mut unused_keys = Vec::new();
+        let defined = read_libraries(&mut finder, obj, file, warnings, &mut unused_keys)?;
         let mut textures = Textures::new(finder, options, monitor);
         let mut materials = Vec::with_capacity(defined.len() + 1);
         let mut maps = Vec::with_capacity(defined.len() + 1);
+        let mut notes = Vec::new();
         let kinds = Kinds::new(view);
         for (done, (folder, m)) in defined.iter().enumerate() {
             monitor.check()?;
             monitor.tell(done as f32 / defined.len() as f32);
-            materials.push(kinds.material(m, folder, &mut textures, warnings)?);
+            let finish = finished(&kinds, m, folder, &mut textures, warnings)?;
+            notes.push((materials.len() as u32, finish.note));
+            materials.push(finish.material);
             maps.push(m.diffuse_map.as_ref().map_or(TexcoordMap::default(), |map| map.texcoords));
             if let (Some(colour), Some(mask)) = (&m.diffuse_map, &m.cutout_map)
                 && colour.texcoords != mask.texcoords
@@ -245,7 +260,9 @@ impl Palette {
             } else {
                 let m = MtlMaterial { name: name.clone(), ..Default::default() };
                 by_name.insert(name.clone(), materials.len() as u32);
-                materials.push(kinds.material(&m, Path::new(""), &mut textures, warnings)?);
+                let finish = finished(&kinds, &m, Path::new(""), &mut textures, warnings)?;
+                notes.push((materials.len() as u32, finish.note));
+                materials.push(finish.material);
                 maps.push(TexcoordMap::default());
                 unknown.push((name, line));
             }
@@ -261,12 +278,24 @@ impl Palette {
             warnings.push(format!("{at}:{line}: no MTL file defines material `{name}`{more}; drawn light grey"));
         }
         if let Some(path) = view_path {
-            kinds.tell_unknown(path, &by_name, warnings);
+            kinds.tell_unknown(path, |name| by_name.contains_key(name), warnings);
         }
         let material_of: Vec<u32> = file.materials.iter().map(|(name, _)| by_name[name]).collect();
         let texcoord_maps = material_of.iter().map(|&m| maps[m as usize]).collect();
         let (textures, missing_textures) = (textures.textures, textures.missing);
-        Ok(Palette { materials, textures, missing_textures, material_of, texcoord_maps, default_material })
+        // Of materials that no face has there is nothing to say.
+        let used: HashSet<u32> = material_of.iter().copied().collect();
+        let notes = notes.into_iter().filter(|(i, note)| used.contains(i) && note.says_something());
+        Ok(Palette {
+            materials,
+            textures,
+            missing_textures,
+            material_of,
+            texcoord_maps,
+            default_material,
+            unused_keys,
+            notes: notes.map(|(_, note)| note).collect(),
+        })
     }
 }
 
@@ -276,6 +305,7 @@ fn read_libraries(
     obj: &Path,
     file: &ObjFile,
     warnings: &mut Vec<String>,
+    unused_keys: &mut Vec<UnusedKey>,
 ) -> Result<Vec<(PathBuf, MtlMaterial)>> {
     let source = finder.source();
     let folder = obj.parent().unwrap_or(Path::new(""));
@@ -307,8 +337,8 @@ fn read_libraries(
             if !read_paths.insert(path.clone()) {
                 continue;
             }
-            let mut read = Library { materials: Vec::new(), warnings: Vec::new() };
-            match mtl::read(source, &path, &mut read.warnings) {
+            let mut read = Library::default();
+            match mtl::read(source, &path, &mut read.warnings, &mut read.unused_keys) {
                 Ok(materials) => read.materials = materials,
                 Err(e @ (Error::Cancelled | Error::LimitExceeded { .. })) => return Err(e),
                 Err(e) => read.warnings.push(format!("{e}; its materials are drawn light grey")),
@@ -334,12 +364,15 @@ fn read_libraries(
             }
             read.warnings.append(&mut again.take(&format!("more materials of {} are defined again", path.display())));
             // The words of a file that is none of the scene's are not for those who see the messages.
-            if !read.warnings.is_empty() && source.is_outside(folder, &path) {
-                let (at, count) = (path.display(), read.warnings.len());
-                warnings
-                    .push(format!("{at}: {count} things are wrong; not told, for it lies outside the scene's folder"));
+            let count = read.warnings.len() + read.unused_keys.len();
+            if count > 0 && source.is_outside(folder, &path) {
+                let at = path.display();
+                warnings.push(format!(
+                    "{at}: {count} things are wrong or not used; not told, for it lies outside the scene's folder"
+                ));
             } else {
                 own.append(&mut read.warnings);
+                unused_keys.append(&mut read.unused_keys);
             }
         }
     }
@@ -350,9 +383,11 @@ fn read_libraries(
 }
 
 /// What an MTL file gave.
+#[derive(Default)]
 struct Library {
     materials: Vec<MtlMaterial>,
     warnings: Vec<String>,
+    unused_keys: Vec<UnusedKey>,
 }
 
 /// Most MTL files that one `mtllib` line may name.
@@ -387,113 +422,51 @@ fn find_libraries(finder: &mut Finder, folder: &Path, argument: &str) -> Result<
     Ok(names)
 }
 
-/// The name lists of a view.
-struct Kinds<'a> {
-    lists: [(&'static str, Option<HashSet<&'a str>>); 4],
-}
-
-const MIRROR: usize = 0;
-const GLASS: usize = 1;
-const THIN_GLASS: usize = 2;
-const MASKED: usize = 3;
-
-impl<'a> Kinds<'a> {
-    fn new(view: &'a ViewFile) -> Self {
-        fn set(names: &Option<Vec<String>>) -> Option<HashSet<&str>> {
-            names.as_ref().map(|n| n.iter().map(String::as_str).collect())
-        }
-        Kinds {
-            lists: [
-                ("mirror_materials", set(&view.mirror_materials)),
-                ("glass_materials", set(&view.glass_materials)),
-                ("thin_glass_materials", set(&view.thin_glass_materials)),
-                ("alpha_masked_materials", set(&view.alpha_masked_materials)),
-            ],
-        }
-    }
-
-    /// Whether list `kind` has `name`; `None`: there is no such list.
-    fn listed(&self, kind: usize, name: &str) -> Option<bool> {
-        self.lists[kind].1.as_ref().map(|list| list.contains(name))
-    }
-
-    fn surface(&self, m: &MtlMaterial, warnings: &mut Vec<String>) -> Surface {
-        let thin = self.listed(THIN_GLASS, &m.name).unwrap_or(false);
-        let model = m.illumination_model;
-        let glass = self.listed(GLASS, &m.name).unwrap_or(matches!(model, Some(4 | 6 | 7 | 9)));
-        let mirror = self.listed(MIRROR, &m.name).unwrap_or(matches!(model, Some(3 | 5)));
-        let in_both = self.listed(MIRROR, &m.name) == Some(true) && (thin || self.listed(GLASS, &m.name) == Some(true));
-        if in_both {
-            warnings.push(format!("view.json: material `{}` is listed as mirror and as glass; drawn as glass", m.name));
-        }
-        match (thin, glass, mirror) {
-            (true, _, _) => Surface::ThinGlass,
-            (_, true, _) => Surface::Glass,
-            (_, _, true) => Surface::Mirror,
-            _ => Surface::Opaque,
-        }
-    }
-
-    fn material(
-        &self,
-        m: &MtlMaterial,
-        folder: &Path,
-        textures: &mut Textures,
-        warnings: &mut Vec<String>,
-    ) -> Result<Material> {
-        let base = Material::default();
-        let surface = self.surface(m, warnings);
-        if surface == Surface::Opaque && m.cutout_map.is_none() && m.opacity.is_some_and(|o| o < 0.999) {
-            warnings.push(format!(
-                "material `{}` has opacity {} and is drawn opaque; list it in view.json under thin_glass_materials",
-                m.name,
-                m.opacity.unwrap_or(1.0)
-            ));
-        }
-        let load = |map: &Option<mtl::Map>, role, textures: &mut Textures| match map {
-            Some(map) => textures.load(folder, &map.file, role),
-            None => Ok(None),
-        };
-        let diffuse_texture = load(&m.diffuse_map, Role::Colour, textures)?;
-        let mut cutout_texture = load(&m.cutout_map, Role::Mask, textures)?;
-        if self.listed(MASKED, &m.name) == Some(true) && m.cutout_map.is_none() {
-            cutout_texture = diffuse_texture.filter(|&t| textures.has_holes(t));
-            if cutout_texture.is_none() {
-                let name = &m.name;
-                warnings
-                    .push(format!("view.json: alpha_masked_materials: `{name}` has no map_d and no alpha in map_Kd"));
+/// A material of an MTL file with its textures.
+fn finished(
+    kinds: &Kinds,
+    m: &MtlMaterial,
+    folder: &Path,
+    textures: &mut Textures,
+    warnings: &mut Vec<String>,
+) -> Result<Finish> {
+    let load = |map: &Option<mtl::Map>, role, textures: &mut Textures| match map {
+        Some(map) => textures.load(folder, &map.file, role),
+        None => Ok(None),
+    };
+    let diffuse_texture = load(&m.diffuse_map, Role::Colour, textures)?;
+    let mut cutout_texture = load(&m.cutout_map, Role::Mask, textures)?;
+    let mut finish = kinds.decide(m, diffuse_texture.is_some(), warnings);
+    let mut because = "map_d";
+    if m.cutout_map.is_none() {
+        let alpha = diffuse_texture.map_or(Alpha::None, |t| textures.alpha(t));
+        let name = &m.name;
+        match (kinds.masked(name), alpha) {
+            (Some(true), Alpha::Mask | Alpha::Other) => {
+                cutout_texture = diffuse_texture;
+                because = "map_Kd's alpha, listed in view.json";
             }
-        }
-        // A picture without `Kd` shows as it is.
-        let plain = if m.diffuse_map.is_some() { Vec3::ONE } else { base.diffuse };
-        Ok(Material {
-            name: m.name.clone(),
-            diffuse: m.diffuse.unwrap_or(plain),
-            specular: m.specular.unwrap_or(base.specular),
-            shininess: m.shininess.unwrap_or(base.shininess),
-            transmission: m.transmission.unwrap_or(base.transmission),
-            index_of_refraction: m.index_of_refraction.unwrap_or(base.index_of_refraction),
-            surface,
-            diffuse_texture,
-            cutout_texture,
-        })
-    }
-
-    fn tell_unknown(&self, view: &Path, known: &HashMap<String, u32>, warnings: &mut Vec<String>) {
-        for (key, list) in &self.lists {
-            let mut unknown: Vec<&str> =
-                list.iter().flatten().copied().filter(|name| !known.contains_key(*name)).collect();
-            unknown.sort_unstable();
-            if !unknown.is_empty() {
-                let at = view.display();
-                warnings.push(format!("{at}: {key}: no material is named {}", quoted(&unknown)));
+            (Some(true), Alpha::None) => warnings
+                .push(format!("view.json: alpha_masked_materials: `{name}` has no map_d and no alpha in map_Kd")),
+            (None, Alpha::Mask) => {
+                cutout_texture = diffuse_texture;
+                because = "map_Kd's alpha, all or nothing almost everywhere";
             }
+            (None, Alpha::Other) => {
+                finish
+                    .note
+                    .mended
+                    .push("map_Kd's alpha is no mask and not used; list it in alpha_masked_materials if it is");
+            }
+            (Some(false), _) | (None, Alpha::None) => {}
         }
     }
-}
-
-fn quoted(names: &[&str]) -> String {
-    names.iter().map(|n| format!("`{n}`")).collect::<Vec<_>>().join(", ")
+    finish.material.diffuse_texture = diffuse_texture;
+    finish.material.cutout_texture = cutout_texture;
+    if cutout_texture.is_some() {
+        finish.note.cutout_because = because;
+    }
+    Ok(finish)
 }
 
 /// Triangles whose material has a picture and that do not say where on it they lie.

@@ -15,15 +15,16 @@ pub(super) fn bad_number(source: &Source, path: &Path) -> Option<Error> {
     let mut lines = LogicalLines::open(source, path, MAX_OBJ_BYTES).ok()?;
     loop {
         let (number, line) = lines.next_line().ok()??;
-        let (key, rest) = keyword(line);
+        let (written, rest) = keyword(line);
         let rest = without_comment(rest);
-        let least = match key {
+        let key = written.to_ascii_lowercase();
+        let least = match key.as_slice() {
             b"v" | b"vn" => 3,
             b"vt" => 1,
             _ => continue,
         };
         if let Err(message) = check(rest, least, key == b"v") {
-            let key = String::from_utf8_lossy(key).into_owned();
+            let key = String::from_utf8_lossy(written).into_owned();
             return Some(Error::Syntax {
                 path: path.to_path_buf(),
                 line: number,

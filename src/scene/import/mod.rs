@@ -7,6 +7,7 @@ pub(super) mod fit;
 mod lines;
 mod load;
 mod locate;
+mod material;
 mod mtl;
 pub(super) mod normals;
 mod notices;
@@ -15,6 +16,7 @@ mod options;
 mod source;
 mod texture;
 mod triangulate;
+mod unused;
 mod view;
 
 pub use load::{load, load_from, load_with};

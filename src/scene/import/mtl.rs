@@ -4,11 +4,11 @@
 //! As with OBJ files, `tobj` 4.0.5 reads a checked copy: it panics at `Kd 0.5` (one number means grey), takes NaN, and
 //! keeps the options of maps (`-s 2 2 1 wood.jpg`) as part of the file name.
 //!
-//! Meaning of the keys: `Kd` diffuse colour; `Ks` highlight, and what a mirror reflects; `Ns` Blinn-Phong exponent;
-//! `Ni` index of refraction; `Tf` colour of light through glass; `map_Kd` picture that `Kd` multiplies (options `-s`
-//! and `-o` apply); `map_d` cut-out mask; `illum` the kind of surface where `view.json` names none; `d` and `Tr`
-//! (opacity, 1 - opacity) make a warning where they ask for what is not drawn. `Ka` and `Ke` are read and not used:
-//! ambient light is the view's. Everything else is passed over.
+//! Meaning of the keys, in any letter case: `Kd` diffuse colour; `Ks` highlight, and what a mirror reflects; `Ns`
+//! Blinn-Phong exponent; `Ni` index of refraction; `Tf` colour of light through glass; `d` and `Tr` opacity and
+//! 1 - opacity; `map_Kd` picture that `Kd` multiplies (options `-s` and `-o` apply); `map_d` (or `map_opacity`) cut-out
+//! mask; `illum` what kind of surface is asked for. What a material becomes of these is decided in [`super::material`].
+//! Every other key is counted.
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -19,6 +19,8 @@ use super::assemble::TexcoordMap;
 use super::lines::{LogicalLines, MAX_MTL_BYTES, keyword, name_text, without_comment, words};
 use super::notices::Notices;
 use super::source::Source;
+use super::unused::Tally;
+use crate::scene::UnusedKey;
 use crate::{Error, Result};
 
 /// A `map_` line.
@@ -39,16 +41,26 @@ pub(super) struct MtlMaterial {
     pub shininess: Option<f32>,
     pub transmission: Option<Vec3>,
     pub index_of_refraction: Option<f32>,
-    /// `d`, or 1 - `Tr`.
-    pub opacity: Option<f32>,
+    /// `d`.
+    pub dissolve: Option<f32>,
+    /// `Tr`.
+    pub transparency: Option<f32>,
     pub illumination_model: Option<u8>,
     pub diffuse_map: Option<Map>,
     pub cutout_map: Option<Map>,
 }
 
-/// Reads the MTL file at `path`; appends sentences about what was passed over to `warnings`.
-pub(super) fn read(source: &Source, path: &Path, warnings: &mut Vec<String>) -> Result<Vec<MtlMaterial>> {
-    let checked = check(source, path, warnings)?;
+/// Reads the MTL file at `path`; appends sentences about what was mended to `warnings`, and the keys that were not used
+/// to `unused`.
+pub(super) fn read(
+    source: &Source,
+    path: &Path,
+    warnings: &mut Vec<String>,
+    unused: &mut Vec<UnusedKey>,
+) -> Result<Vec<MtlMaterial>> {
+    let mut tally = Tally::new(path);
+    let checked = check(source, path, warnings, &mut tally)?;
+    unused.append(&mut tally.into_keys());
     let (materials, _) = tobj::load_mtl_buf(&mut checked.text.as_bytes())
         .map_err(|e| Error::scene(path.display().to_string(), format!("not a readable MTL file: {e}")))?;
     let mut read: Vec<MtlMaterial> = Vec::with_capacity(materials.len());
@@ -68,7 +80,8 @@ pub(super) fn read(source: &Source, path: &Path, warnings: &mut Vec<String>) -> 
             shininess: m.shininess,
             transmission: extra("Tf").and_then(three),
             index_of_refraction: m.optical_density,
-            opacity: m.dissolve.or_else(|| extra("Tr").and_then(|t| t.parse::<f32>().ok()).map(|t| 1.0 - t)),
+            dissolve: m.dissolve,
+            transparency: extra("Tr").and_then(|t| t.parse().ok()),
             illumination_model: m.illumination_model,
             diffuse_map: map(&m.diffuse_texture),
             cutout_map: map(&m.dissolve_texture),
@@ -108,7 +121,7 @@ struct Checked {
     maps: Vec<Map>,
 }
 
-fn check(source: &Source, path: &Path, warnings: &mut Vec<String>) -> Result<Checked> {
+fn check(source: &Source, path: &Path, warnings: &mut Vec<String>, tally: &mut Tally) -> Result<Checked> {
     let mut lines = LogicalLines::open(source, path, MAX_MTL_BYTES)?;
     let mut checked = Checked::default();
     let (mut told, before) = (Notices::default(), warnings.len());
@@ -117,10 +130,33 @@ fn check(source: &Source, path: &Path, warnings: &mut Vec<String>) -> Result<Che
         // A value that makes no sense has what it would be without it to fall back on.
         let at = path.display();
         let mut left_out = |message: String| warnings.push(format!("{at}:{number}: {message}; left out"));
-        let (key, rest) = keyword(line);
-        let key = String::from_utf8_lossy(key).into_owned();
-        let lower = key.to_ascii_lowercase();
-        if lower == "newmtl" {
+        let (written, rest) = keyword(line);
+        // As the format's specification writes it: exporters differ in letter case.
+        let key = match written.to_ascii_lowercase().as_slice() {
+            b"" | [b'#', ..] => continue,
+            b"newmtl" => "newmtl",
+            b"kd" => "Kd",
+            b"ks" => "Ks",
+            b"tf" => "Tf",
+            b"ns" => "Ns",
+            b"ni" => "Ni",
+            b"d" => "d",
+            b"tr" => "Tr",
+            b"illum" => "illum",
+            b"map_kd" => "map_Kd",
+            b"map_d" | b"map_opacity" => "map_d",
+            // Blender writes these for every material, mostly as 0: that asks for nothing.
+            b"ka" | b"ke" | b"pm" | b"ps" | b"pc" | b"aniso" | b"anisor"
+                if numbers(rest).is_ok_and(|values| values.iter().all(|&v| v == 0.0)) =>
+            {
+                continue;
+            }
+            _ => {
+                tally.note(written, number);
+                continue;
+            }
+        };
+        if key == "newmtl" {
             let name = name_text(rest);
             if name.is_empty() {
                 warnings.push(format!("{at}:{number}: `newmtl` without a name; faces of `usemtl` without one get it"));
@@ -130,7 +166,7 @@ fn check(source: &Source, path: &Path, warnings: &mut Vec<String>) -> Result<Che
             continue;
         }
         let mut wrong = |message: String| left_out(format!("`{key}`: {message}"));
-        match key.as_str() {
+        match key {
             "Kd" | "Ks" | "Tf" => {
                 if let Some(first @ (b"spectral" | b"xyz")) = words(rest).next() {
                     let first = String::from_utf8_lossy(first);
@@ -165,7 +201,7 @@ fn check(source: &Source, path: &Path, warnings: &mut Vec<String>) -> Result<Che
                         continue;
                     }
                 };
-                let (low, high) = match key.as_str() {
+                let (low, high) = match key {
                     "Ns" => (0.0, 1.0e6),
                     "Ni" => (1.0, 100.0),
                     _ => (0.0, 1.0),
@@ -190,8 +226,8 @@ fn check(source: &Source, path: &Path, warnings: &mut Vec<String>) -> Result<Che
                     _ => wrong(format!("`{text}` is not an illumination model; 0 to 10 are right")),
                 }
             }
-            _ if lower == "map_kd" || lower == "map_d" => {
-                let canonical = if lower == "map_kd" { "map_Kd" } else { "map_d" };
+            // map_Kd, map_d
+            _ => {
                 let (map, ignored) = parse_map(&name_text(rest));
                 if map.file.is_empty() {
                     wrong("a file name is missing".into());
@@ -200,10 +236,9 @@ fn check(source: &Source, path: &Path, warnings: &mut Vec<String>) -> Result<Che
                 if !ignored.is_empty() {
                     warnings.push(format!("{at}:{number}: `{key}` options not used: {}", ignored.join(", ")));
                 }
-                checked.text += &format!("{canonical} {}\n", checked.maps.len());
+                checked.text += &format!("{key} {}\n", checked.maps.len());
                 checked.maps.push(map);
             }
-            _ => {}
         }
     }
     told.shorten(warnings, before);
@@ -280,11 +315,17 @@ mod tests {
     use super::*;
 
     fn read_text(text: &str) -> (Result<Vec<MtlMaterial>>, Vec<String>) {
+        let (materials, warnings, _) = read_all(text);
+        (materials, warnings)
+    }
+
+    fn read_all(text: &str) -> (Result<Vec<MtlMaterial>>, Vec<String>, Vec<UnusedKey>) {
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("m.mtl");
         std::fs::write(&path, text).unwrap();
-        let mut warnings = Vec::new();
-        (read(&Source::Disk { confined_to: None }, &path, &mut warnings), warnings)
+        let (mut warnings, mut unused) = (Vec::new(), Vec::new());
+        let materials = read(&Source::Disk { confined_to: None }, &path, &mut warnings, &mut unused);
+        (materials, warnings, unused)
     }
 
     #[test]
@@ -299,12 +340,37 @@ mod tests {
             (m.name.as_str(), m.diffuse, m.specular),
             ("red glass", Some(Vec3::splat(0.5)), Some(Vec3::new(0.1, 0.2, 0.3)))
         );
-        assert_eq!((m.shininess, m.index_of_refraction, m.opacity), (Some(30.0), Some(1.45), Some(0.75)));
+        assert_eq!((m.shininess, m.index_of_refraction), (Some(30.0), Some(1.45)));
+        assert_eq!((m.dissolve, m.transparency), (None, Some(0.25)));
         assert_eq!((m.transmission, m.illumination_model), (Some(Vec3::new(1.0, 0.5, 0.25)), Some(7)));
         let map = m.diffuse_map.as_ref().unwrap();
         assert_eq!((map.file.as_str(), map.texcoords.scale), ("my wood.jpg", Vec2::new(2.0, 3.0)));
         assert_eq!(m.cutout_map.as_ref().unwrap().file, "a.png");
-        assert_eq!(materials[1].opacity, Some(0.5));
+        assert_eq!((materials[1].dissolve, materials[1].transparency), (Some(0.5), None));
+    }
+
+    #[test]
+    fn keys_count_in_any_letter_case() {
+        let (plain, _) =
+            read_text("newmtl a\nKd 1 0 0\nKs 1 1 1\nNs 9\nmap_Kd a.png\nmap_d b.png\nillum 2\nTr .5\nd .5\n");
+        for other in [
+            "NEWMTL a\nKD 1 0 0\nKS 1 1 1\nNS 9\nMAP_KD a.png\nMAP_D b.png\nILLUM 2\nTR .5\nD .5\n",
+            "newmtl a\nkd 1 0 0\nks 1 1 1\nns 9\nmap_kd a.png\nmap_opacity b.png\nillum 2\ntr .5\nd .5\n",
+        ] {
+            let (materials, warnings, unused) = read_all(other);
+            assert_eq!(&materials.unwrap(), plain.as_ref().unwrap());
+            assert!(warnings.is_empty() && unused.is_empty(), "{warnings:?} {unused:?}");
+        }
+    }
+
+    #[test]
+    fn keys_that_are_not_used_are_counted() {
+        let (materials, warnings, unused) =
+            read_all("newmtl a\n# Ke\n\nKe 1 1 1\nmap_Bump -bm 1 b.png\nnewmtl b\nKE 0 0 1\nfoo\nPm 0\nKe 0 0 0\n");
+        assert!(materials.is_ok() && warnings.is_empty());
+        let keys: Vec<_> = unused.iter().map(|k| (k.key.as_str(), k.count, k.first_line)).collect();
+        assert_eq!(keys, [("Ke", 2, 4), ("map_Bump", 1, 5), ("foo", 1, 8)]);
+        assert!(unused[0].file.ends_with("m.mtl"));
     }
 
     #[test]

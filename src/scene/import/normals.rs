@@ -6,6 +6,8 @@
 //! from polygonal facets", 1998) times its area. The area keeps large flat faces flat beside their narrow bevels: by
 //! angle alone a bevelled mirror reflects like a curved one. Faces meet where they share a vertex index. Sums run in
 //! the order of triangles: the same bits on every machine.
+//!
+//! Where the file has smoothing groups, they decide instead of the angle: see [`Smoothing`].
 
 use glam::Vec3;
 
@@ -13,6 +15,34 @@ use super::options::filled;
 use crate::Result;
 use crate::math::{cross, dot, pack_normal};
 use crate::monitor::Monitor;
+
+/// What an OBJ file says about the shading of a face: its `s` line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
+pub(super) enum Smoothing {
+    /// Nothing: smooth with faces that say nothing, within the crease angle.
+    #[default]
+    Unsaid,
+    /// `s off` or `s 0`: flat.
+    Off,
+    /// `s N`: smooth with the faces of this group at any angle.
+    Group(u32),
+}
+
+impl Smoothing {
+    /// The value of an `s` line; `None` if it is none.
+    pub(super) fn parse(text: &[u8]) -> Option<Self> {
+        let text = std::str::from_utf8(text).ok()?.trim();
+        match text {
+            _ if text.eq_ignore_ascii_case("off") => Some(Smoothing::Off),
+            // Without a value, as some exporters write it.
+            "" => Some(Smoothing::Off),
+            _ => text.parse().ok().map(|n| if n == 0 { Smoothing::Off } else { Smoothing::Group(n) }),
+        }
+    }
+}
+
+/// Faces of one smoothing group that lie back to back would cancel each other: from this cosine on they do not count.
+const BACK_TO_BACK: f32 = -0.95;
 
 /// Faces that meet at a larger angle have a visible edge between them.
 pub(crate) const CREASE_DEGREES: f32 = 30.0;
@@ -33,7 +63,8 @@ const PLACE: &str = "computing normals";
 /// Cells along each side of the octahedral grid of directions.
 const GRID: usize = 24;
 
-/// Computes the marked corners' normals (bits 0 to 2 of `missing`: the corner has none).
+/// Computes the marked corners' normals (bits 0 to 2 of `missing`: the corner has none). `smoothing` has an entry for
+/// each triangle, or none at all.
 ///
 /// # Errors
 /// [`crate::Error::Cancelled`]; no memory.
@@ -41,6 +72,7 @@ pub(super) fn compute(
     positions: &[Vec3],
     triangles: &[[u32; 3]],
     missing: &[u8],
+    smoothing: &[Smoothing],
     corner_normals: &mut [[u32; 3]],
     monitor: &Monitor,
 ) -> Result<()> {
@@ -77,8 +109,8 @@ pub(super) fn compute(
         }
         let corners = &corners[first[v] as usize..first[v + 1] as usize];
         around.clear();
-        around.extend(corners.iter().map(|&c| Around::new(positions, triangles, c)));
-        let sums = if around.len() > MOST_PAIRED { Some(sums_by_direction(&around)) } else { None };
+        around.extend(corners.iter().map(|&c| Around::new(positions, triangles, smoothing, c)));
+        let sums = if around.len() > MOST_PAIRED { Some(sums_of_many(&around)) } else { None };
         for (i, here) in around.iter().enumerate() {
             let (t, k) = (here.corner as usize / 3, here.corner as usize % 3);
             if missing[t] & (1 << k) == 0 {
@@ -88,7 +120,7 @@ pub(super) fn compute(
                 Some(sums) => sums[i],
                 None => around
                     .iter()
-                    .filter(|other| dot(here.normal, other.normal) >= CREASE_COSINE)
+                    .filter(|other| here.is_smooth_with(other))
                     .fold(Vec3::ZERO, |sum, other| sum + other.normal * other.weight),
             };
             // The face itself always counts unless its weight is 0; faces within the crease angle cannot cancel it.
@@ -100,8 +132,10 @@ pub(super) fn compute(
 }
 
 /// One face at a vertex.
+#[derive(Clone, Copy)]
 struct Around {
     corner: u32,
+    smoothing: Smoothing,
     /// Of unit length.
     normal: Vec3,
     /// Angle at the vertex in radians times twice the area in squared scene units.
@@ -109,7 +143,7 @@ struct Around {
 }
 
 impl Around {
-    fn new(positions: &[Vec3], triangles: &[[u32; 3]], corner: u32) -> Self {
+    fn new(positions: &[Vec3], triangles: &[[u32; 3]], smoothing: &[Smoothing], corner: u32) -> Self {
         let (t, k) = (corner as usize / 3, corner as usize % 3);
         let p = |k: usize| positions[triangles[t][k % 3] as usize];
         let (a, b, c) = (p(0), p(1), p(2));
@@ -117,7 +151,18 @@ impl Around {
         let cosine = dot(e, f) / (dot(e, e) * dot(f, f)).sqrt();
         let angle = if cosine.is_finite() { arc_cosine(cosine) } else { 0.0 };
         let area_vector = cross(b - a, c - a);
-        Around { corner, normal: unit(area_vector), weight: angle * area_vector.length() }
+        let smoothing = smoothing.get(t).copied().unwrap_or_default();
+        Around { corner, smoothing, normal: unit(area_vector), weight: angle * area_vector.length() }
+    }
+
+    /// Whether `other`, at the same vertex, counts for this face's normal.
+    fn is_smooth_with(&self, other: &Around) -> bool {
+        let cosine = dot(self.normal, other.normal);
+        match (self.smoothing, other.smoothing) {
+            (Smoothing::Unsaid, Smoothing::Unsaid) => cosine >= CREASE_COSINE,
+            (Smoothing::Group(a), Smoothing::Group(b)) => a == b && cosine > BACK_TO_BACK,
+            _ => self.corner == other.corner,
+        }
     }
 }
 
@@ -132,6 +177,27 @@ fn arc_cosine(x: f32) -> f32 {
     let a = x.abs().min(1.0);
     let r = (1.0 - a).sqrt() * (1.570_728_8 + a * (-0.212_114_4 + a * (0.074_261 - a * 0.018_729_3)));
     if x < 0.0 { std::f32::consts::PI - r } else { r }
+}
+
+/// For each face the weighted sum over the faces that are smooth with it, in far less than a step for every pair.
+fn sums_of_many(around: &[Around]) -> Vec<Vec3> {
+    let mut order: Vec<usize> = (0..around.len()).collect();
+    order.sort_by_key(|&i| around[i].smoothing);
+    let mut sums: Vec<Vec3> = around.iter().map(|a| a.normal * a.weight).collect();
+    for alike in order.chunk_by(|&a, &b| around[a].smoothing == around[b].smoothing) {
+        match around[alike[0]].smoothing {
+            Smoothing::Off => {}
+            Smoothing::Group(_) => {
+                let sum = alike.iter().fold(Vec3::ZERO, |sum, &i| sum + around[i].normal * around[i].weight);
+                alike.iter().for_each(|&i| sums[i] = sum);
+            }
+            Smoothing::Unsaid => {
+                let unsaid: Vec<Around> = alike.iter().map(|&i| around[i]).collect();
+                alike.iter().zip(sums_by_direction(&unsaid)).for_each(|(&i, sum)| sums[i] = sum);
+            }
+        }
+    }
+    sums
 }
 
 /// For each face the weighted sum over faces of like direction, where directions are taken together in cells.
@@ -168,8 +234,89 @@ mod tests {
 
     fn normals_of(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<[Vec3; 3]> {
         let mut packed = vec![[0; 3]; triangles.len()];
-        compute(positions, triangles, &vec![7; triangles.len()], &mut packed, &Monitor::default()).unwrap();
+        compute(positions, triangles, &vec![7; triangles.len()], &[], &mut packed, &Monitor::default()).unwrap();
         packed.into_iter().map(|c| c.map(unpack_normal)).collect()
+    }
+
+    /// A tube around y of `sides` squares, each in the smoothing group that `group` gives; its normals' angles to those
+    /// of a cylinder, and to those of the faces.
+    fn tube(sides: u32, group: impl Fn(u32) -> Smoothing) -> Vec<(f32, f32)> {
+        let mut positions = Vec::new();
+        for i in 0..sides {
+            let (s, c) = (i as f32 / sides as f32 * TAU).sin_cos();
+            positions.extend([Vec3::new(c, 0.0, -s), Vec3::new(c, 1.0, -s)]);
+        }
+        let at = |i: u32| 2 * (i % sides);
+        let triangles: Vec<_> =
+            (0..sides).flat_map(|i| [[at(i), at(i + 1), at(i + 1) + 1], [at(i), at(i + 1) + 1, at(i) + 1]]).collect();
+        let smoothing: Vec<_> = (0..sides).flat_map(|i| [group(i); 2]).collect();
+        let mut packed = vec![[0; 3]; triangles.len()];
+        compute(&positions, &triangles, &vec![7; triangles.len()], &smoothing, &mut packed, &Monitor::default())
+            .unwrap();
+        let mut angles = Vec::new();
+        for (triangle, normals) in triangles.iter().zip(packed) {
+            let [a, b, c] = triangle.map(|v| positions[v as usize]);
+            let face = unit(cross(b - a, c - a));
+            for (v, n) in triangle.iter().zip(normals.map(unpack_normal)) {
+                let round = positions[*v as usize] * Vec3::new(1.0, 0.0, 1.0);
+                angles.push((dot(round, n).min(1.0).acos(), dot(face, n).min(1.0).acos()));
+            }
+        }
+        angles
+    }
+
+    #[test]
+    fn smoothing_groups_decide_instead_of_the_crease_angle() {
+        // Eight sides meet at 45 degrees, 24 at 15; 45 at one vertex would be summed by direction if there were more.
+        let near = |a: f32| a < 0.01;
+        assert!(tube(8, |_| Smoothing::Group(1)).iter().all(|&(round, _)| near(round)));
+        assert!(tube(8, |_| Smoothing::Unsaid).iter().all(|&(_, face)| near(face)));
+        assert!(tube(24, |_| Smoothing::Off).iter().all(|&(_, face)| near(face)));
+        assert!(tube(24, |_| Smoothing::Unsaid).iter().all(|&(round, _)| near(round)));
+        // Each side a group of its own.
+        assert!(tube(24, Smoothing::Group).iter().all(|&(_, face)| near(face)));
+        assert!(tube(24, |i| if i < 12 { Smoothing::Unsaid } else { Smoothing::Group(1) }).iter().any(|a| !near(a.0)));
+    }
+
+    #[test]
+    fn groups_hold_at_vertices_of_very_many_faces_too() {
+        // Two fans of 100 faces each around one vertex, at right angles.
+        let mut positions = vec![Vec3::ZERO];
+        for i in 0..=100 {
+            let (s, c) = (i as f32 / 100.0).sin_cos();
+            positions.extend([Vec3::new(c, 0.0, -s), Vec3::new(0.0, c, s)]);
+        }
+        let flat = (0..100).map(|i| [0, 1 + 2 * i, 3 + 2 * i]);
+        let upright = (0..100).map(|i| [0, 2 + 2 * i, 4 + 2 * i]);
+        let triangles: Vec<[u32; 3]> = flat.chain(upright).collect();
+        let tip = |first: Smoothing, second: Smoothing| {
+            let smoothing: Vec<_> = (0..200).map(|i| if i < 100 { first } else { second }).collect();
+            let mut packed = vec![[0; 3]; 200];
+            compute(&positions, &triangles, &[7; 200], &smoothing, &mut packed, &Monitor::default()).unwrap();
+            [unpack_normal(packed[0][0]), unpack_normal(packed[199][0])]
+        };
+        let (up, side) = (Vec3::Y, Vec3::X);
+        let near = |a: Vec3, b: Vec3| (a - b).length() < 0.02;
+        for (first, second) in [(Smoothing::Group(1), Smoothing::Group(2)), (Smoothing::Off, Smoothing::Off)] {
+            let [a, b] = tip(first, second);
+            assert!(near(a, up) && near(b, side), "{a} {b}");
+        }
+        let [a, b] = tip(Smoothing::Group(1), Smoothing::Group(1));
+        assert!(near(a, (up + side).normalize()) && near(a, b), "{a} {b}");
+        let [a, b] = tip(Smoothing::Unsaid, Smoothing::Unsaid);
+        assert!(near(a, up) && near(b, side), "{a} {b}");
+    }
+
+    #[test]
+    fn values_of_s_lines() {
+        let parse = |text: &str| Smoothing::parse(text.as_bytes());
+        for text in ["off", "OFF", "0", ""] {
+            assert_eq!(parse(text), Some(Smoothing::Off), "{text}");
+        }
+        assert_eq!(parse("7"), Some(Smoothing::Group(7)));
+        for text in ["x", "-1", "1.5", "1 2", "99999999999"] {
+            assert_eq!(parse(text), None, "{text}");
+        }
     }
 
     #[test]
@@ -253,7 +400,8 @@ mod tests {
     #[test]
     fn corners_that_have_normals_keep_them() {
         let mut packed = vec![[1, 2, 3]];
-        compute(&[Vec3::ZERO, Vec3::X, Vec3::Y], &[[0, 1, 2]], &[0b010], &mut packed, &Monitor::default()).unwrap();
+        compute(&[Vec3::ZERO, Vec3::X, Vec3::Y], &[[0, 1, 2]], &[0b010], &[], &mut packed, &Monitor::default())
+            .unwrap();
         assert_eq!((packed[0][0], packed[0][2]), (1, 3));
         assert_eq!(unpack_normal(packed[0][1]), Vec3::Z);
     }

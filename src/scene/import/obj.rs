@@ -22,13 +22,15 @@ use std::path::Path;
 use glam::DVec2;
 
 use super::LoadOptions;
-use super::lines::{LogicalLines, MAX_OBJ_BYTES, keyword, name_text, without_comment, words};
+use super::lines::{LONGEST_KEY, LogicalLines, MAX_OBJ_BYTES, keyword, lower_case, name_text, without_comment, words};
 use super::locate;
+use super::normals::Smoothing;
 use super::options::reserve;
 use super::source::Source;
+use super::unused::Tally;
 use crate::error::Remedy;
 use crate::monitor::Monitor;
-use crate::scene::MAX_COORDINATE;
+use crate::scene::{MAX_COORDINATE, UnusedKey};
 use crate::{Error, Result};
 
 /// What stands for "the file has none" in the list of normals.
@@ -59,8 +61,12 @@ pub(super) struct ObjFile {
     pub libraries: Vec<(String, usize)>,
     /// Groups that were left and taken up again under the same name, in order of appearance.
     pub reopened_groups: Vec<String>,
+    /// Smoothing groups: from which face on (counting all of `models`) each holds. Empty if the file has none.
+    pub smoothing: Vec<(u64, Smoothing)>,
     /// What was left out.
     pub warnings: Vec<String>,
+    /// Keys that were not used.
+    pub unused_keys: Vec<UnusedKey>,
 }
 
 /// The texture coordinates of a corner: `index` is `tobj`'s, into those of `mesh`, and `all` those of the file. `None`:
@@ -96,7 +102,9 @@ pub(super) fn read(source: &Source, path: &Path, options: &LoadOptions, monitor:
         materials: feed.materials.names,
         libraries: feed.libraries,
         reopened_groups: feed.reopened_groups,
+        smoothing: feed.smoothing,
         warnings,
+        unused_keys: feed.unused.into_keys(),
     })
 }
 
@@ -155,6 +163,10 @@ struct Feed<'a> {
     reopened_groups: Vec<String>,
     materials: Names,
     libraries: Vec<(String, usize)>,
+    /// Faces so far.
+    faces: u64,
+    smoothing: Vec<(u64, Smoothing)>,
+    unused: Tally,
     /// Count and first line of: lines and points, faces with fewer than three corners, free-form geometry.
     lines_and_points: (u64, usize),
     small_faces: (u64, usize),
@@ -173,6 +185,7 @@ enum Step {
 
 impl<'a> Feed<'a> {
     fn new(lines: LogicalLines, options: &'a LoadOptions, monitor: &'a Monitor) -> Self {
+        let unused = Tally::new(lines.path());
         let mut feed = Feed {
             lines,
             monitor,
@@ -190,6 +203,9 @@ impl<'a> Feed<'a> {
             reopened_groups: Vec::new(),
             materials: Names::default(),
             libraries: Vec::new(),
+            faces: 0,
+            smoothing: Vec::new(),
+            unused,
             lines_and_points: (0, 0),
             small_faces: (0, 0),
             free_form: (0, 0),
@@ -205,8 +221,10 @@ impl<'a> Feed<'a> {
     /// Turns one logical line into plain OBJ.
     fn step(&mut self) -> Result<Step> {
         let Some((line_number, line)) = self.lines.next_line()? else { return Ok(Step::End) };
-        let (key, rest) = keyword(line);
-        let rest = if matches!(key, b"v" | b"vt" | b"vn" | b"f") { without_comment(rest) } else { rest };
+        let (written, rest) = keyword(line);
+        let mut lower = [0; LONGEST_KEY];
+        let key = lower_case(written, &mut lower);
+        let rest = if matches!(key, b"v" | b"vt" | b"vn" | b"f" | b"s") { without_comment(rest) } else { rest };
         match key {
             b"v" => {
                 self.defined.positions += 1;
@@ -214,7 +232,10 @@ impl<'a> Feed<'a> {
                     // x y z, or with a weight
                     3 | 4 => rest,
                     // with a colour, which is left out
-                    6 | 7 => first_words(rest, 3),
+                    6 | 7 => {
+                        self.unused.count("vertex colours", line_number);
+                        first_words(rest, 3)
+                    }
                     n => {
                         let message =
                             format!("`v` with {n} numbers; 3 are right (or 4 with a weight, 6 with a colour)");
@@ -274,6 +295,7 @@ impl<'a> Feed<'a> {
                     }
                     Ok(corners) if corners >= 3 => {
                         self.faces_in_group += 1;
+                        self.faces += 1;
                         self.group_has_faces[self.group] = true;
                         if bad_indices > 0 {
                             note(&mut self.bad_indices, line_number);
@@ -305,8 +327,16 @@ impl<'a> Feed<'a> {
                 self.libraries.push((name, line_number));
             }
             b"curv" | b"curv2" | b"surf" => note(&mut self.free_form, line_number),
-            // Smoothing groups, render attributes, comments, anything unknown: as any OBJ reader, pass over it.
-            _ => {}
+            b"s" => match Smoothing::parse(rest) {
+                Some(now) if self.smoothing.last().is_some_and(|&(_, before)| before == now) => {}
+                Some(now) => self.smoothing.push((self.faces, now)),
+                None => self.unused.note(written, line_number),
+            },
+            // ZBrush's vertex colours are a comment.
+            b"#mrgb" => self.unused.note(written, line_number),
+            b"" | [b'#', ..] => {}
+            // Render attributes and anything unknown: as any OBJ reader, pass over it, but not without a word.
+            _ => self.unused.note(written, line_number),
         }
         let names = self.groups.names.len().max(self.materials.names.len()).max(self.libraries.len());
         if names > self.options.max_names {

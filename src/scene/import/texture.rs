@@ -27,6 +27,34 @@ pub(super) enum Role {
     Mask,
 }
 
+/// What an alpha channel looks like.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Alpha {
+    /// There is none, or all of it is 1.
+    None,
+    /// Holes in something solid: some of it clear, some solid, less than a quarter in between.
+    Mask,
+    /// Something else: gloss, height, a soft veil, or 0 all over.
+    Other,
+}
+
+impl Alpha {
+    fn of(texels: &[u32]) -> Self {
+        let (mut clear, mut between, mut below_one) = (0u64, 0u64, 0u64);
+        for alpha in texels.iter().map(|t| t >> 24) {
+            clear += u64::from(alpha < 128);
+            between += u64::from((26..230).contains(&alpha));
+            below_one += u64::from(alpha < 255);
+        }
+        let all = texels.len() as u64;
+        match () {
+            () if below_one == 0 => Alpha::None,
+            () if clear > 0 && clear < all && between * 4 < all => Alpha::Mask,
+            () => Alpha::Other,
+        }
+    }
+}
+
 /// The textures of a scene; each file is read once for each role.
 pub(super) struct Textures<'a> {
     pub textures: Vec<Texture>,
@@ -36,6 +64,7 @@ pub(super) struct Textures<'a> {
     notices: Notices,
     finder: Finder<'a>,
     known: HashMap<(PathBuf, Role), Option<u32>>,
+    alphas: HashMap<u32, Alpha>,
     total_bytes: u64,
     max_bytes: u64,
     monitor: &'a Monitor,
@@ -50,6 +79,7 @@ impl<'a> Textures<'a> {
             notices: Notices::default(),
             finder,
             known: HashMap::new(),
+            alphas: HashMap::new(),
             total_bytes: 0,
             max_bytes: options.max_texture_bytes,
             monitor,
@@ -118,9 +148,10 @@ impl<'a> Textures<'a> {
         }
     }
 
-    /// Whether a texture has any texel that is not opaque.
-    pub(super) fn has_holes(&self, index: u32) -> bool {
-        self.textures[index as usize].texels.iter().any(|t| t >> 24 < 255)
+    /// What a texture's alpha channel looks like; looked at once for each.
+    pub(super) fn alpha(&mut self, index: u32) -> Alpha {
+        let texels = &self.textures[index as usize].texels;
+        *self.alphas.entry(index).or_insert_with(|| Alpha::of(texels))
     }
 
     /// Decodes a picture; the inner error says what is wrong with it.
@@ -313,4 +344,22 @@ fn png_size(head: &[u8]) -> Option<(u32, u32)> {
 /// Rec. 709 weights on stored (not linear) values: masks are data, not light.
 fn luminance(r: u8, g: u8, b: u8) -> u8 {
     ((54 * u32::from(r) + 183 * u32::from(g) + 19 * u32::from(b)) >> 8) as u8
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_mask_is_told_from_other_alpha_channels() {
+        let of = |alphas: &[u32]| Alpha::of(&alphas.iter().map(|a| a << 24).collect::<Vec<_>>());
+        assert_eq!(of(&[255; 8]), Alpha::None);
+        assert_eq!(of(&[0, 0, 255, 255]), Alpha::Mask);
+        // An edge that is softened.
+        assert_eq!(of(&[0, 0, 0, 0, 128, 255, 255, 255]), Alpha::Mask);
+        // Nothing at all, a veil, gloss, a ramp.
+        for other in [&[0, 0, 0, 0][..], &[254; 4], &[200, 210, 220, 255], &[0, 50, 100, 150, 200, 255]] {
+            assert_eq!(of(other), Alpha::Other, "{other:?}");
+        }
+    }
 }

@@ -13,10 +13,10 @@
 //! | `lights[].intensity` | RGB or number, not negative; reflected radiance is `Kd * intensity * cos / distance^2` | 1 |
 //! | `suggested_ambient` | RGB or number, not negative: the ambient light | 0.12 |
 //! | `background` | RGB or number, not negative: what rays see that hit nothing | black |
-//! | `mirror_materials` | names of materials that reflect | materials with `illum` 3 or 5 |
-//! | `glass_materials` | names of closed glass bodies | materials with `illum` 4, 6, 7 or 9 |
-//! | `thin_glass_materials` | names of panes without thickness; wins over `glass_materials` | none |
-//! | `alpha_masked_materials` | names of materials with holes where `map_d` (or, without one, the alpha of `map_Kd`) is below one half; materials with `map_d` are cut out in any case | none |
+//! | `mirror_materials` | names of materials that reflect; no others do | by all keys of the material: `illum` 3 or 5 with a `Ks`, mostly |
+//! | `glass_materials` | names of closed glass bodies; if this list or the next exists, no others let light through | by all keys of the material: `d` below 1 with `illum` 6 or 7, mostly |
+//! | `thin_glass_materials` | names of panes without thickness; wins over `glass_materials` | by all keys of the material: `d` or `Tr` below 1 |
+//! | `alpha_masked_materials` | names of materials with holes where `map_d` (or, without one, the alpha of `map_Kd`) is below one half; materials with `map_d` are cut out in any case | materials whose `map_Kd` has an alpha of all or nothing |
 //! | `triangles` | how many triangles the OBJ file makes; a warning if it is another number | not checked |
 //! | `name`, `title`, `bounding_box`, `groups`, `materials`, `textures`, `units`, `up_axis`, `license`, `notes` | for people; not used | |
 //!
