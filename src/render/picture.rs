@@ -15,7 +15,7 @@ use crate::{Error, Result, files};
 /// The longest side, in pixels, of a picture that is read or written.
 pub const MAX_SIDE: u32 = 16_384;
 
-/// The most pixels of a picture that is read: 8192x8192. Comparing two such pictures takes 1.5 GiB.
+/// The most pixels of a picture that is read: 8192x8192. Comparing two such pictures takes 1 GiB.
 pub const MAX_PIXELS: u64 = 1 << 26;
 
 /// The largest picture file that is read: 16 bits in each of four channels of the largest picture need as much.
