@@ -5,7 +5,7 @@
 //! [`Cancel`] token, kept or shared with another thread, ends the work at any time with [`Error::Cancelled`].
 //!
 //! ```
-//! use rarefy::monitor::{Cancel, Event, Monitor};
+//! use rarefy::internal::monitor::{Cancel, Event, Monitor};
 //!
 //! let cancel = Cancel::default(); // give a clone to whoever may end the work
 //! let monitor = Monitor::new(|event| {
@@ -15,7 +15,7 @@
 //! })
 //! .with_cancel(&cancel);
 //! cancel.cancel();
-//! let tree = rarefy::prepare::kdtree::KdTree::build(&[], &[], &Default::default(), &monitor);
+//! let tree = rarefy::internal::prepare::kdtree::KdTree::build(&[], &[], &Default::default(), &monitor);
 //! assert!(matches!(tree, Err(rarefy::Error::Cancelled)));
 //! ```
 

@@ -11,11 +11,11 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
-use rarefy::device::open::{DeviceChoice, DeviceOptions};
-use rarefy::method::counts::Keep;
-use rarefy::method::options::{Mode, RenderOptions};
-use rarefy::monitor::{Cancel, Event, Monitor};
-use rarefy::scene::{self, builtin};
+use rarefy::internal::device::open::{DeviceChoice, DeviceOptions};
+use rarefy::internal::method::counts::Keep;
+use rarefy::internal::method::options::{Mode, RenderOptions};
+use rarefy::internal::monitor::{Cancel, Event, Monitor};
+use rarefy::internal::scene::{self, builtin};
 use rarefy::{Error, Result};
 use rarefy_host_tests::frames::renderer_of;
 

@@ -15,11 +15,11 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 use std::sync::Arc;
 
-use rarefy::device::open::{DeviceChoice, DeviceOptions};
-use rarefy::method::counts::Keep;
-use rarefy::method::options::{Mode, RenderOptions};
-use rarefy::prepare::{PreparedScene, Shading};
-use rarefy::render::renderer::Renderer;
+use rarefy::internal::device::open::{DeviceChoice, DeviceOptions};
+use rarefy::internal::method::counts::Keep;
+use rarefy::internal::method::options::{Mode, RenderOptions};
+use rarefy::internal::prepare::{PreparedScene, Shading};
+use rarefy::internal::render::renderer::Renderer;
 
 const SCENES: [&str; 6] = ["modern-hall", "figures", "classroom", "living-room", "bathroom", "kitchen"];
 const SIZE: u32 = 1024;
@@ -122,7 +122,7 @@ fn measure(anchor: &Path, scene: &Path, name: &str, rounds: usize) -> BenchResul
         ..DeviceOptions::default()
     };
     let monitor = rarefy::Monitor::default();
-    let prepared = PreparedScene::new(&rarefy::scene::load(scene, &monitor)?, Shading::Anchor, &monitor)?;
+    let prepared = PreparedScene::new(&rarefy::internal::scene::load(scene, &monitor)?, Shading::Anchor, &monitor)?;
     let mut renderer = Renderer::new(Arc::new(prepared), &options, &monitor)?;
     let frame = RenderOptions { width: SIZE, height: SIZE, mode: Mode::Full, ..RenderOptions::default() };
     let counted = renderer.render_exactly(&frame, Keep::COUNTERS)?;

@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use glam::Vec3;
-use rarefy::prepare::kdtree::{BuildOptions, KdTree};
+use rarefy::internal::prepare::kdtree::{BuildOptions, KdTree};
 
 /// Positions and triangles of an OBJ file; of its lines, `v` and `f` only.
 fn read_obj(path: &Path) -> Option<(Vec<Vec3>, Vec<[u32; 3]>)> {

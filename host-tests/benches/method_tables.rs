@@ -6,13 +6,13 @@
 //! PART is part of a table's name; all by default.
 #![allow(clippy::unwrap_used, missing_docs)]
 
-use rarefy::analysis::metrics::{self, Rgb8};
-use rarefy::device::open::{DeviceChoice, DeviceOptions};
-use rarefy::layout::{PLANE_OBJECT, PLANE_SHADOW};
-use rarefy::method::counts::Keep;
-use rarefy::method::options::*;
-use rarefy::render::frame::FrameStats;
-use rarefy::render::renderer::Renderer;
+use rarefy::internal::analysis::metrics::{self, Rgb8};
+use rarefy::internal::device::open::{DeviceChoice, DeviceOptions};
+use rarefy::internal::layout::{PLANE_OBJECT, PLANE_SHADOW};
+use rarefy::internal::method::counts::Keep;
+use rarefy::internal::method::options::*;
+use rarefy::internal::render::frame::FrameStats;
+use rarefy::internal::render::renderer::Renderer;
 use rarefy_host_tests::command::root;
 
 const SCENES: [(&str, &str); 6] = [
@@ -207,9 +207,12 @@ fn load(folder: &str, name: &'static str, size: u32) -> Option<Scene> {
     }
     let monitor = rarefy::Monitor::default();
     let device = DeviceOptions { device: DeviceChoice::Cpu, ..DeviceOptions::default() };
-    let mut renderer =
-        rarefy_host_tests::frames::renderer_of(&rarefy::scene::load(&path, &monitor).unwrap(), &device, &monitor)
-            .unwrap();
+    let mut renderer = rarefy_host_tests::frames::renderer_of(
+        &rarefy::internal::scene::load(&path, &monitor).unwrap(),
+        &device,
+        &monitor,
+    )
+    .unwrap();
     let frame = renderer.render_exactly(&options(size, Mode::Full, Method::default()), keep()).unwrap();
     let (objects, shadows) = (renderer.plane(PLANE_OBJECT).unwrap(), renderer.plane(PLANE_SHADOW).unwrap());
     Some(Scene { name, renderer, full: frame.pixels, stats: frame.stats, objects, shadows })

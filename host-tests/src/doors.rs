@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Doors to OpenCL and small kernels to send through them.
 
-use rarefy::device::opencl::{
+use rarefy::internal::device::opencl::{
     Arg, CacheFolder, DeviceLaunch, Door, Kernel, OpenOptions, Profile, ProgramSource, build_log, open_with,
 };
 

@@ -3,26 +3,26 @@
 #![allow(clippy::unwrap_used)]
 
 use glam::{Vec2, Vec3};
-use rarefy::device::frame_memory::FrameInputs;
-use rarefy::device::open::{DeviceChoice, DeviceOptions};
-use rarefy::device::twin::SceneArgs;
-use rarefy::device::twin::executor::scene_args;
-use rarefy::device::twin::known_shadows::KnownShadows;
-use rarefy::device::twin::ray_tree::{SurfacePoint, gather_secondary, shadow_test, surface_point};
-use rarefy::device::twin::scene_args::Work;
-use rarefy::device::twin::shade::{ShadePoint, shade_local};
-use rarefy::device::twin::traverse::closest_hit;
-use rarefy::layout::{NO_TRIANGLE, Triangle};
-use rarefy::math::pack_normal;
-use rarefy::method::camera::frame_inputs;
-use rarefy::method::counts::Keep;
-use rarefy::method::options::{
+use rarefy::internal::device::frame_memory::FrameInputs;
+use rarefy::internal::device::open::{DeviceChoice, DeviceOptions};
+use rarefy::internal::device::twin::SceneArgs;
+use rarefy::internal::device::twin::executor::scene_args;
+use rarefy::internal::device::twin::known_shadows::KnownShadows;
+use rarefy::internal::device::twin::ray_tree::{SurfacePoint, gather_secondary, shadow_test, surface_point};
+use rarefy::internal::device::twin::scene_args::Work;
+use rarefy::internal::device::twin::shade::{ShadePoint, shade_local};
+use rarefy::internal::device::twin::traverse::closest_hit;
+use rarefy::internal::layout::{NO_TRIANGLE, Triangle};
+use rarefy::internal::math::pack_normal;
+use rarefy::internal::method::camera::frame_inputs;
+use rarefy::internal::method::counts::Keep;
+use rarefy::internal::method::options::{
     Checks, Compared, Correction, Method, Mode, RenderOptions, Spread, TextureRule, Tolerances,
 };
-use rarefy::prepare::kdtree::KdNode;
-use rarefy::prepare::{PreparedScene, Shading};
-use rarefy::render::renderer::Renderer;
-use rarefy::scene::{Light, Material, Object, Scene, SceneParts, Surface, Texture};
+use rarefy::internal::prepare::kdtree::KdNode;
+use rarefy::internal::prepare::{PreparedScene, Shading};
+use rarefy::internal::render::renderer::Renderer;
+use rarefy::internal::scene::{Light, Material, Object, Scene, SceneParts, Surface, Texture};
 
 /// Shorthand for a vector.
 pub fn v(x: f32, y: f32, z: f32) -> Vec3 {
@@ -230,7 +230,7 @@ impl Stand {
     /// Follows the ray from `o` along `d` as the twin follows a pixel's.
     pub fn look(&self, o: Vec3, d: Vec3) -> Option<Look> {
         let scene = self.args();
-        let d = rarefy::math::normalize(d);
+        let d = rarefy::internal::math::normalize(d);
         let mut work = Work::default();
         let hit = closest_hit(&scene, o, d, &mut work);
         if hit.triangle == NO_TRIANGLE {
@@ -316,7 +316,7 @@ pub fn plainly_converged(compared: Compared) -> Correction {
 }
 
 /// Draws a frame without the fall-back and keeps its attributes. Returns picture and statistics.
-pub fn draw(renderer: &mut Renderer, options: &RenderOptions) -> rarefy::render::frame::Frame {
+pub fn draw(renderer: &mut Renderer, options: &RenderOptions) -> rarefy::internal::render::frame::Frame {
     renderer.render_exactly(options, Keep::EVERYTHING).unwrap()
 }
 

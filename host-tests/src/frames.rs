@@ -4,26 +4,26 @@
 use std::sync::Arc;
 
 use rarefy::Scene;
-use rarefy::device::executor::Executor;
-use rarefy::device::frame_memory::{FrameBuffer, FrameHandle};
-use rarefy::device::hooks::parity::{KernelParity, Parity};
-use rarefy::device::kernels::Mutation;
-use rarefy::device::launch::{Hook, Queue};
-use rarefy::device::open::DeviceOptions;
-use rarefy::device::opencl::executor::OpenClExecutor;
-use rarefy::device::opencl::{OpenOptions, Profile, open_with};
-use rarefy::device::stage::{Kernel, Stage};
-use rarefy::device::twin::executor::TwinExecutor;
-use rarefy::layout::*;
-use rarefy::method::bands::{FrameBudget, Plan, read_frame_plane};
-use rarefy::method::camera::frame_inputs;
-use rarefy::method::counts::{Keep, PixelCounts};
-use rarefy::method::frame::draw_frame;
-use rarefy::method::options::{Mode, RenderOptions};
-use rarefy::prepare::{PreparedScene, Shading};
-use rarefy::render::renderer::Renderer;
-use rarefy::scene::builtin;
-use rarefy::scene::{Object, SceneParts, Surface, Texture};
+use rarefy::internal::device::executor::Executor;
+use rarefy::internal::device::frame_memory::{FrameBuffer, FrameHandle};
+use rarefy::internal::device::hooks::parity::{KernelParity, Parity};
+use rarefy::internal::device::kernels::Mutation;
+use rarefy::internal::device::launch::{Hook, Queue};
+use rarefy::internal::device::open::DeviceOptions;
+use rarefy::internal::device::opencl::executor::OpenClExecutor;
+use rarefy::internal::device::opencl::{OpenOptions, Profile, open_with};
+use rarefy::internal::device::stage::{Kernel, Stage};
+use rarefy::internal::device::twin::executor::TwinExecutor;
+use rarefy::internal::layout::*;
+use rarefy::internal::method::bands::{FrameBudget, Plan, read_frame_plane};
+use rarefy::internal::method::camera::frame_inputs;
+use rarefy::internal::method::counts::{Keep, PixelCounts};
+use rarefy::internal::method::frame::draw_frame;
+use rarefy::internal::method::options::{Mode, RenderOptions};
+use rarefy::internal::prepare::{PreparedScene, Shading};
+use rarefy::internal::render::renderer::Renderer;
+use rarefy::internal::scene::builtin;
+use rarefy::internal::scene::{Object, SceneParts, Surface, Texture};
 
 /// A test that finds no OpenCL fails, unless this variable says `none`.
 pub const WITHOUT_OPENCL: &str = "RAREFY_TEST_OPENCL";
@@ -224,8 +224,11 @@ pub fn zoo() -> Scene {
     }
     // A copy of the glass sphere, moved to the front, of thin glass.
     let glass = find(&scene, "glass");
-    let thin =
-        rarefy::scene::Material { name: "thin".into(), surface: Surface::ThinGlass, ..scene.materials[glass].clone() };
+    let thin = rarefy::internal::scene::Material {
+        name: "thin".into(),
+        surface: Surface::ThinGlass,
+        ..scene.materials[glass].clone()
+    };
     scene.materials.push(thin);
     scene.objects.push(Object { name: "bubble".into(), material: scene.materials.len() as u32 - 1 });
     let bubble = scene.objects.len() as u32 - 1;

@@ -3,9 +3,9 @@
 #![allow(clippy::unwrap_used)]
 
 use glam::DVec3;
-use rarefy::layout::{CLASS_BASE, CLASS_INTERPOLATED, CLASS_MASK, CLASS_TRACED, FAIL_ALL, PLANE_CLASS};
-use rarefy::method::options::{Mode, RenderOptions, Test, Tolerances};
-use rarefy::scene::Scene;
+use rarefy::internal::layout::{CLASS_BASE, CLASS_INTERPOLATED, CLASS_MASK, CLASS_TRACED, FAIL_ALL, PLANE_CLASS};
+use rarefy::internal::method::options::{Mode, RenderOptions, Test, Tolerances};
+use rarefy::internal::scene::Scene;
 
 use crate::fixtures::{SceneBuilder, draw, options, twin_renderer, with};
 

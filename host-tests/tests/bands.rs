@@ -4,14 +4,14 @@
 
 use glam::{DVec3, Vec3};
 use rarefy::Error;
-use rarefy::device::open::{DeviceChoice, DeviceOptions};
-use rarefy::layout::*;
-use rarefy::method::counts::Keep;
-use rarefy::method::options::{Compared, Correction, Mode, RenderOptions};
-use rarefy::render::frame::Frame;
-use rarefy::render::renderer::Renderer;
-use rarefy::scene::Scene;
-use rarefy::scene::builtin;
+use rarefy::internal::device::open::{DeviceChoice, DeviceOptions};
+use rarefy::internal::layout::*;
+use rarefy::internal::method::counts::Keep;
+use rarefy::internal::method::options::{Compared, Correction, Mode, RenderOptions};
+use rarefy::internal::render::frame::Frame;
+use rarefy::internal::render::renderer::Renderer;
+use rarefy::internal::scene::Scene;
+use rarefy::internal::scene::builtin;
 use rarefy_host_tests::fixtures::*;
 use rarefy_host_tests::frames::{no_opencl, renderer_of};
 use rarefy_host_tests::masks::*;
@@ -210,7 +210,7 @@ fn real_scenes_are_the_same_in_bands() {
             continue;
         }
         for device in devices() {
-            let scene = rarefy::scene::load(&folder.join(name), &rarefy::Monitor::default()).unwrap();
+            let scene = rarefy::internal::scene::load(&folder.join(name), &rarefy::Monitor::default()).unwrap();
             let mut renderer = renderer(scene, device);
             let options = RenderOptions { width: 400, height: 301, ..RenderOptions::default() };
             assert_same_in_bands(&mut renderer, &options, &[2, 10, 32, 76, 200]);

@@ -7,9 +7,9 @@ use std::path::Path;
 
 use glam::Vec3;
 use rarefy::Error;
-use rarefy::scene::builtin::mesh::Mesh;
-use rarefy::scene::builtin::{self, Model};
-use rarefy::scene::{LoadNotes, Scene, Surface};
+use rarefy::internal::scene::builtin::mesh::Mesh;
+use rarefy::internal::scene::builtin::{self, Model};
+use rarefy::internal::scene::{LoadNotes, Scene, Surface};
 
 fn all() -> Vec<Model> {
     builtin::NAMES.iter().map(|name| builtin::generate(name).unwrap()).collect()
@@ -232,7 +232,7 @@ fn files_and_memory_give_the_same_scene() {
     for name in builtin::NAMES {
         let path = folder.path().join("made").join(name);
         builtin::write(name, &path).unwrap();
-        let loaded = rarefy::scene::load(&path, &rarefy::Monitor::default()).unwrap();
+        let loaded = rarefy::internal::scene::load(&path, &rarefy::Monitor::default()).unwrap();
         let made = builtin::to_scene(name).unwrap();
         assert_eq!(difference(&loaded, &made), None, "{name}");
         assert_eq!(loaded.warnings(), Vec::<String>::new());

@@ -6,8 +6,8 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use rarefy::device::stage::Stage;
-use rarefy::render::picture::read_rgb8;
+use rarefy::internal::device::stage::Stage;
+use rarefy::internal::render::picture::read_rgb8;
 use rarefy_host_tests::command::{Run, rarefy_in};
 use rarefy_host_tests::frames::no_opencl;
 use serde_json::Value;
@@ -46,15 +46,17 @@ fn set(words: &'static str) -> BTreeSet<&'static str> {
 #[test]
 fn render_writes_the_picture_the_layers_and_the_statistics() {
     let folder = folder();
-    let layers: Vec<String> =
-        rarefy::analysis::layers::Layer::NAMES.iter().map(|name| format!("--layer {name}={name}.png")).collect();
+    let layers: Vec<String> = rarefy::internal::analysis::layers::Layer::NAMES
+        .iter()
+        .map(|name| format!("--layer {name}={name}.png"))
+        .collect();
     let arguments = format!("render spheres --device cpu --size 40x30 -o out.png --json out.json {}", layers.join(" "));
     let run = rarefy(&folder, &arguments).expect(0);
     assert!(run.stdout.contains("out.png: 40x30 on CPU twin"), "{}", run.stdout);
     let (width, height, picture) = read_rgb8(folder.path().join("out.png")).unwrap();
     assert_eq!((width, height), (40, 30));
     assert!(picture.iter().collect::<BTreeSet<_>>().len() > 50, "an empty picture");
-    for name in rarefy::analysis::layers::Layer::NAMES {
+    for name in rarefy::internal::analysis::layers::Layer::NAMES {
         let (width, height, layer) = read_rgb8(folder.path().join(format!("{name}.png"))).unwrap();
         assert_eq!((width, height), (40, 30), "{name}");
         assert_eq!(layer == picture, name == "color", "{name}");
@@ -178,7 +180,7 @@ fn selftest_passes_and_names_what_is_broken() {
         return;
     }
     let run = rarefy(&folder, "selftest --device opencl").expect(0);
-    for (.., label) in rarefy::device::stage::LAUNCHES {
+    for (.., label) in rarefy::internal::device::stage::LAUNCHES {
         assert!(run.stdout.contains(label), "{label} was not tested:\n{}", run.stdout);
     }
     // All eight stages: host-tests/tests/mutants.rs.

@@ -4,14 +4,14 @@
 //! that takes what rays find from the full picture.
 #![allow(clippy::unwrap_used)]
 
-use rarefy::device::frame_memory::FrameBuffer;
-use rarefy::device::launch::Queue;
-use rarefy::device::stage::{Kernel, Stage};
-use rarefy::layout::*;
-use rarefy::method::options::{Compared, Correction, Mode, RenderOptions, Spread};
-use rarefy::render::renderer::Renderer;
-use rarefy::scene::Scene;
-use rarefy::scene::builtin;
+use rarefy::internal::device::frame_memory::FrameBuffer;
+use rarefy::internal::device::launch::Queue;
+use rarefy::internal::device::stage::{Kernel, Stage};
+use rarefy::internal::layout::*;
+use rarefy::internal::method::options::{Compared, Correction, Mode, RenderOptions, Spread};
+use rarefy::internal::render::renderer::Renderer;
+use rarefy::internal::scene::Scene;
+use rarefy::internal::scene::builtin;
 use rarefy_host_tests::fixtures::*;
 
 /// The planes of a frame that correction is about, row-major.

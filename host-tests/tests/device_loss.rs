@@ -2,13 +2,13 @@
 //! A device that is lost in the middle of a frame, as when a phone's watchdog strikes: injected, on a real OpenCL.
 #![allow(clippy::unwrap_used, missing_docs)]
 
-use rarefy::device::open::{DeviceChoice, DeviceOptions};
-use rarefy::device::opencl::{CacheFolder, Faults};
-use rarefy::layout::PLANE_OBJECT;
-use rarefy::method::counts::Keep;
-use rarefy::method::options::RenderOptions;
-use rarefy::render::renderer::Renderer;
-use rarefy::scene::builtin;
+use rarefy::internal::device::open::{DeviceChoice, DeviceOptions};
+use rarefy::internal::device::opencl::{CacheFolder, Faults};
+use rarefy::internal::layout::PLANE_OBJECT;
+use rarefy::internal::method::counts::Keep;
+use rarefy::internal::method::options::RenderOptions;
+use rarefy::internal::render::renderer::Renderer;
+use rarefy::internal::scene::builtin;
 use rarefy::{Error, Monitor};
 use rarefy_host_tests::frames::{no_opencl, renderer_of};
 

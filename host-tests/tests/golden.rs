@@ -6,12 +6,12 @@
 
 use std::path::{Path, PathBuf};
 
-use rarefy::analysis::layers::{self, Layer};
-use rarefy::device::open::{DeviceChoice, DeviceOptions};
-use rarefy::method::counts::Keep;
-use rarefy::method::options::{Mode, RenderOptions};
-use rarefy::render::picture::{read_rgb8, write_png};
-use rarefy::scene::builtin;
+use rarefy::internal::analysis::layers::{self, Layer};
+use rarefy::internal::device::open::{DeviceChoice, DeviceOptions};
+use rarefy::internal::method::counts::Keep;
+use rarefy::internal::method::options::{Mode, RenderOptions};
+use rarefy::internal::render::picture::{read_rgb8, write_png};
+use rarefy::internal::scene::builtin;
 use rarefy_host_tests::command::root;
 use rarefy_host_tests::frames::renderer_of;
 

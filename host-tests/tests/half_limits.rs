@@ -4,14 +4,14 @@
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use rarefy::Error;
-use rarefy::device::executor::Executor;
-use rarefy::device::open::{DeviceChoice, DeviceOptions};
-use rarefy::device::opencl::executor::{scan_group, work_group};
-use rarefy::device::opencl::{CacheFolder, OpenOptions, Profile};
-use rarefy::device::stage::LAUNCHES;
-use rarefy::method::counts::Keep;
-use rarefy::method::options::RenderOptions;
-use rarefy::scene::builtin;
+use rarefy::internal::device::executor::Executor;
+use rarefy::internal::device::open::{DeviceChoice, DeviceOptions};
+use rarefy::internal::device::opencl::executor::{scan_group, work_group};
+use rarefy::internal::device::opencl::{CacheFolder, OpenOptions, Profile};
+use rarefy::internal::device::stage::LAUNCHES;
+use rarefy::internal::method::counts::Keep;
+use rarefy::internal::method::options::RenderOptions;
+use rarefy::internal::scene::builtin;
 use rarefy_host_tests::frames::{Prepared, device, no_opencl, renderer_of};
 
 const SCENE: &str = "spheres";

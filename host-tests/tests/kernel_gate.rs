@@ -5,8 +5,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use rarefy::device::kernels::{FILES, assemble};
-use rarefy::layout::{BuildFlavour, Traversal, build_options};
+use rarefy::internal::device::kernels::{FILES, assemble};
+use rarefy::internal::layout::{BuildFlavour, Traversal, build_options};
 use rarefy_host_tests::clang::{check, clang};
 use rarefy_host_tests::command::root;
 

@@ -5,10 +5,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use rarefy::device::kernels::FILES;
-use rarefy::device::opencl::Profile;
-use rarefy::device::stage::{Binding, Kernel, Program};
-use rarefy::layout::{BuildFlavour, StepParams, Traversal, build_options};
+use rarefy::internal::device::kernels::FILES;
+use rarefy::internal::device::opencl::Profile;
+use rarefy::internal::device::stage::{Binding, Kernel, Program};
+use rarefy::internal::layout::{BuildFlavour, StepParams, Traversal, build_options};
 use rarefy_host_tests::clang::{clang, intermediate_code};
 use rarefy_host_tests::command::root;
 

@@ -4,12 +4,12 @@
 #![allow(clippy::unwrap_used)]
 
 use glam::{Vec2, Vec3};
-use rarefy::layout::*;
-use rarefy::method::counts::Keep;
-use rarefy::method::options::{Mode, RenderOptions};
-use rarefy::render::frame::Frame;
-use rarefy::render::renderer::Renderer;
-use rarefy::scene::Scene;
+use rarefy::internal::layout::*;
+use rarefy::internal::method::counts::Keep;
+use rarefy::internal::method::options::{Mode, RenderOptions};
+use rarefy::internal::render::frame::Frame;
+use rarefy::internal::render::renderer::Renderer;
+use rarefy::internal::scene::Scene;
 use rarefy_host_tests::fixtures::*;
 
 const SIDE: u32 = 48;
@@ -94,7 +94,7 @@ fn at_folds_and_between_objects_every_light_is_asked() {
 
 #[test]
 fn the_strictest_tolerances_ask_every_light() {
-    for scene in [half_shadow().build(40.0), rarefy::scene::builtin::to_scene("mirror-room").unwrap()] {
+    for scene in [half_shadow().build(40.0), rarefy::internal::scene::builtin::to_scene("mirror-room").unwrap()] {
         let mut renderer = twin_renderer(scene);
         let full = render(&mut renderer, &options(Mode::Full, SIDE, SIDE, 2));
         let mut strictest = adaptive(true);

@@ -4,11 +4,11 @@
 #![allow(clippy::unwrap_used)]
 
 use glam::{DVec3, Vec2, Vec3};
-use rarefy::layout::*;
-use rarefy::math::{unpack_normal, unpack_texcoord};
-use rarefy::method::options::{Compared, Correction, Interpolation, Mode, RenderOptions, Tolerances};
-use rarefy::scene::builtin;
-use rarefy::scene::{Material, Scene};
+use rarefy::internal::layout::*;
+use rarefy::internal::math::{unpack_normal, unpack_texcoord};
+use rarefy::internal::method::options::{Compared, Correction, Interpolation, Mode, RenderOptions, Tolerances};
+use rarefy::internal::scene::builtin;
+use rarefy::internal::scene::{Material, Scene};
 use rarefy_host_tests::fixtures::*;
 use rarefy_host_tests::masks::*;
 
@@ -84,7 +84,7 @@ fn pictures() -> Vec<Scene> {
     scenes
 }
 
-fn full_picture(renderer: &mut rarefy::render::renderer::Renderer, width: u32, height: u32) -> Vec<u32> {
+fn full_picture(renderer: &mut rarefy::internal::render::renderer::Renderer, width: u32, height: u32) -> Vec<u32> {
     draw(renderer, &options(Mode::Full, width, height, 2)).pixels
 }
 

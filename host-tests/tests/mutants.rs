@@ -8,14 +8,14 @@
 use std::collections::{BTreeSet, HashMap};
 use std::path::Path;
 
-use rarefy::device::hooks::parity::KernelParity;
-use rarefy::device::kernels::{FILES, Mutation};
-use rarefy::device::open::DeviceOptions;
-use rarefy::device::opencl::{CacheFolder, OpenOptions};
-use rarefy::device::stage::{Kernel, LAUNCHES, Stage};
-use rarefy::layout::Traversal;
-use rarefy::method::options::{Method, RenderOptions};
-use rarefy::selftest::full;
+use rarefy::internal::device::hooks::parity::KernelParity;
+use rarefy::internal::device::kernels::{FILES, Mutation};
+use rarefy::internal::device::open::DeviceOptions;
+use rarefy::internal::device::opencl::{CacheFolder, OpenOptions};
+use rarefy::internal::device::stage::{Kernel, LAUNCHES, Stage};
+use rarefy::internal::layout::Traversal;
+use rarefy::internal::method::options::{Method, RenderOptions};
+use rarefy::internal::selftest::full;
 use rarefy_host_tests::fixtures::sweeps;
 use rarefy_host_tests::frames::{Prepared, mutated_device, no_opencl, walking_by};
 

@@ -6,15 +6,15 @@
 
 use std::path::{Path, PathBuf};
 
-use rarefy::device::executor::Executor;
-use rarefy::device::kernels::Mutation;
-use rarefy::device::open::{DeviceChoice, DeviceOptions};
-use rarefy::device::opencl::CacheFolder;
-use rarefy::layout::Traversal;
-use rarefy::method::counts::Keep;
-use rarefy::method::options::{Mode, RenderOptions};
-use rarefy::render::renderer::Renderer;
-use rarefy::scene::builtin;
+use rarefy::internal::device::executor::Executor;
+use rarefy::internal::device::kernels::Mutation;
+use rarefy::internal::device::open::{DeviceChoice, DeviceOptions};
+use rarefy::internal::device::opencl::CacheFolder;
+use rarefy::internal::layout::Traversal;
+use rarefy::internal::method::counts::Keep;
+use rarefy::internal::method::options::{Mode, RenderOptions};
+use rarefy::internal::render::renderer::Renderer;
+use rarefy::internal::scene::builtin;
 use rarefy_host_tests::fixtures::{blocks, sweeps};
 use rarefy_host_tests::frames::{Drawn, Prepared, mutated_device, renderer_of, twin, walking_by};
 

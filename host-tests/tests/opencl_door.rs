@@ -5,8 +5,10 @@
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use rarefy::Error;
-use rarefy::device::opencl::{Arg, DeviceLaunch, Faults, OpenOptions, Profile, ProgramSource, build_log, open_with};
-use rarefy::monitor::{Cancel, Event, Monitor};
+use rarefy::internal::device::opencl::{
+    Arg, DeviceLaunch, Faults, OpenOptions, Profile, ProgramSource, build_log, open_with,
+};
+use rarefy::internal::monitor::{Cancel, Event, Monitor};
 use rarefy_host_tests::doors::{SOURCE, count, counted, door, door_with, kernel, launch_sum, options};
 use rarefy_host_tests::frames::no_opencl;
 

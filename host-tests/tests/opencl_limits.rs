@@ -4,9 +4,9 @@
 //! Oclgrind runs these with `--test-threads 1` only: it mixes up contexts of several threads.
 #![allow(clippy::unwrap_used, missing_docs)]
 
-use rarefy::device::open::{DeviceChoice, DeviceOptions};
-use rarefy::device::opencl::{Arg, CacheFolder, DeviceLaunch, OpenOptions, Profile, ProgramSource, discover};
-use rarefy::scene::builtin;
+use rarefy::internal::device::open::{DeviceChoice, DeviceOptions};
+use rarefy::internal::device::opencl::{Arg, CacheFolder, DeviceLaunch, OpenOptions, Profile, ProgramSource, discover};
+use rarefy::internal::scene::builtin;
 use rarefy::{Error, Monitor};
 use rarefy_host_tests::doors::{
     SOURCE, count, counted, door, door_under, door_with, kernel, launch_sum, options, profile,

@@ -8,7 +8,7 @@ use std::path::Path;
 use std::process::{Command, Output};
 
 use rarefy::Error;
-use rarefy::device::opencl::{OpenOptions, ProgramSource, build_log, discover, open_with};
+use rarefy::internal::device::opencl::{OpenOptions, ProgramSource, build_log, discover, open_with};
 use rarefy_host_tests::doors::{SOURCE, count, counted, door, door_with, options};
 use rarefy_host_tests::frames::no_opencl;
 
@@ -70,7 +70,7 @@ fn child_with_wrong_library() {
     }
     let found = discover();
     println!("found {} devices, skipped {:?}", found.devices.len(), found.skipped);
-    let search = rarefy::device::opencl::library::find(None);
+    let search = rarefy::internal::device::opencl::library::find(None);
     println!("refused: {:?}", search.reasons());
     assert!(search.accepted.is_some());
     if !found.devices.is_empty() {

@@ -3,15 +3,15 @@
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use rarefy::Scene;
-use rarefy::device::open::{DeviceChoice, DeviceOptions};
-use rarefy::device::opencl::OpenOptions;
-use rarefy::method::counts::Keep;
-use rarefy::method::options::{
+use rarefy::internal::device::open::{DeviceChoice, DeviceOptions};
+use rarefy::internal::device::opencl::OpenOptions;
+use rarefy::internal::method::counts::Keep;
+use rarefy::internal::method::options::{
     Checks, Compared, Correction, GcolSpace, Interpolation, Method, Mode, RenderOptions, Test, TestSet, TextureRule,
     Tolerances,
 };
-use rarefy::render::renderer::Renderer;
-use rarefy::scene::builtin;
+use rarefy::internal::render::renderer::Renderer;
+use rarefy::internal::scene::builtin;
 use rarefy_host_tests::fixtures::{Random, SceneBuilder, blocks, dashes, matte, mirror, v, with};
 use rarefy_host_tests::frames::{Prepared, device, no_opencl, renderer_of, twin, zoo};
 

@@ -11,7 +11,7 @@ use std::os::unix::fs::symlink;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use rarefy::render::picture::read_rgb8;
+use rarefy::internal::render::picture::read_rgb8;
 use rarefy_host_tests::command::{Run, executable, rarefy_in};
 
 const OBJ: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";

@@ -4,14 +4,14 @@
 
 use std::collections::HashMap;
 
-use rarefy::analysis::layers::{self, Layer};
-use rarefy::device::open::{DeviceChoice, DeviceOptions};
-use rarefy::device::opencl::Profile;
-use rarefy::layout::Traversal;
-use rarefy::method::counts::Keep;
-use rarefy::method::options::{Interpolation, Method, Mode, RenderOptions};
-use rarefy::render::renderer::Renderer;
-use rarefy::scene::builtin;
+use rarefy::internal::analysis::layers::{self, Layer};
+use rarefy::internal::device::open::{DeviceChoice, DeviceOptions};
+use rarefy::internal::device::opencl::Profile;
+use rarefy::internal::layout::Traversal;
+use rarefy::internal::method::counts::Keep;
+use rarefy::internal::method::options::{Interpolation, Method, Mode, RenderOptions};
+use rarefy::internal::render::renderer::Renderer;
+use rarefy::internal::scene::builtin;
 use rarefy_host_tests::fixtures::{blocks, corrections};
 use rarefy_host_tests::frames::{no_opencl, renderer_of, walking_by};
 

@@ -5,17 +5,17 @@
 use std::path::{Path, PathBuf};
 
 use rarefy::Error;
-use rarefy::device::kernels::Mutation;
-use rarefy::device::open::{DeviceChoice, DeviceOptions};
-use rarefy::device::opencl::{CacheFolder, OpenOptions, Profile};
-use rarefy::device::stage::Stage;
-use rarefy::method::counts::Keep;
-use rarefy::method::options::RenderOptions;
-use rarefy::prepare::Shading;
-use rarefy::render::renderer::Renderer;
-use rarefy::scene::builtin;
-use rarefy::selftest::quick::Known;
-use rarefy::selftest::{full, quick};
+use rarefy::internal::device::kernels::Mutation;
+use rarefy::internal::device::open::{DeviceChoice, DeviceOptions};
+use rarefy::internal::device::opencl::{CacheFolder, OpenOptions, Profile};
+use rarefy::internal::device::stage::Stage;
+use rarefy::internal::method::counts::Keep;
+use rarefy::internal::method::options::RenderOptions;
+use rarefy::internal::prepare::Shading;
+use rarefy::internal::render::renderer::Renderer;
+use rarefy::internal::scene::builtin;
+use rarefy::internal::selftest::quick::Known;
+use rarefy::internal::selftest::{full, quick};
 use rarefy_host_tests::frames::{device, no_opencl, renderer_of};
 
 const OPENCL: DeviceChoice = DeviceChoice::OpenCl(None);

@@ -6,8 +6,8 @@ use std::fs;
 use std::path::Path;
 
 use glam::{Vec2, Vec3};
-use rarefy::math::unpack_normal;
-use rarefy::scene::{self, Scene, Surface};
+use rarefy::internal::math::unpack_normal;
+use rarefy::internal::scene::{self, Scene, Surface};
 use tempfile::TempDir;
 
 const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";

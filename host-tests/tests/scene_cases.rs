@@ -7,9 +7,9 @@ use std::path::Path;
 
 use glam::Vec3;
 use rarefy::Monitor;
-use rarefy::math::unpack_normal;
-use rarefy::method::options::Mode;
-use rarefy::scene::{self, LoadOptions, Material, Scene};
+use rarefy::internal::math::unpack_normal;
+use rarefy::internal::method::options::Mode;
+use rarefy::internal::scene::{self, LoadOptions, Material, Scene};
 use rarefy_host_tests::command::root;
 use rarefy_host_tests::fixtures::{draw, options, twin_renderer};
 

@@ -6,9 +6,9 @@
 use std::path::PathBuf;
 
 use rarefy::Monitor;
-use rarefy::method::options::Mode;
-use rarefy::scene::doctor::{Finding, Severity, examine, notices};
-use rarefy::scene::{self, Scene, Surface};
+use rarefy::internal::method::options::Mode;
+use rarefy::internal::scene::doctor::{Finding, Severity, examine, notices};
+use rarefy::internal::scene::{self, Scene, Surface};
 use rarefy_host_tests::command::{rarefy_in, root};
 use rarefy_host_tests::fixtures::{draw, options, twin_renderer};
 

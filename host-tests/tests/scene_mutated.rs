@@ -5,7 +5,7 @@
 use std::collections::BTreeMap;
 
 use proptest::prelude::*;
-use rarefy::scene::{self, LoadOptions, Scene};
+use rarefy::internal::scene::{self, LoadOptions, Scene};
 
 /// From memory: thousands of folders would take their time.
 fn load(files: &[(&str, &[u8])]) -> rarefy::Result<Scene> {

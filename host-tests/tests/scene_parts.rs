@@ -3,7 +3,9 @@
 #![allow(clippy::unwrap_used)]
 
 use glam::{Vec2, Vec3};
-use rarefy::scene::{Camera, Light, MAX_LIGHTS, Material, Object, Scene, SceneParts, Surface, Texture, View, builtin};
+use rarefy::internal::scene::{
+    Camera, Light, MAX_LIGHTS, Material, Object, Scene, SceneParts, Surface, Texture, View, builtin,
+};
 
 /// A triangle with everything a scene can have.
 fn whole() -> SceneParts {

@@ -4,7 +4,7 @@
 
 use std::path::{Path, PathBuf};
 
-use rarefy::scene::{self, Scene, Surface};
+use rarefy::internal::scene::{self, Scene, Surface};
 
 /// The folder of real scenes beside the repository, or `None` and a line that says so.
 fn real_scenes() -> Option<PathBuf> {

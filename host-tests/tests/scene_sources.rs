@@ -8,8 +8,8 @@ use std::fs;
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use rarefy::monitor::{Cancel, Monitor};
-use rarefy::scene::{self, LoadOptions, Scene, builtin};
+use rarefy::internal::monitor::{Cancel, Monitor};
+use rarefy::internal::scene::{self, LoadOptions, Scene, builtin};
 use rarefy::{Error, Result};
 
 const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";

@@ -4,10 +4,10 @@
 #![allow(clippy::unwrap_used)]
 
 use glam::{DVec3, Vec2, Vec3};
-use rarefy::layout::*;
-use rarefy::math::unpack_texcoord;
-use rarefy::method::options::{RenderOptions, TextureRule, Tolerances};
-use rarefy::scene::{Material, Scene};
+use rarefy::internal::layout::*;
+use rarefy::internal::math::unpack_texcoord;
+use rarefy::internal::method::options::{RenderOptions, TextureRule, Tolerances};
+use rarefy::internal::scene::{Material, Scene};
 use rarefy_host_tests::fixtures::*;
 use rarefy_host_tests::masks::*;
 

@@ -4,9 +4,9 @@
 #![allow(clippy::unwrap_used)]
 
 use glam::{DVec3, Vec2, Vec3};
-use rarefy::layout::*;
-use rarefy::method::options::Tolerances;
-use rarefy::scene::{Material, Scene};
+use rarefy::internal::layout::*;
+use rarefy::internal::method::options::Tolerances;
+use rarefy::internal::scene::{Material, Scene};
 use rarefy_host_tests::fixtures::*;
 use rarefy_host_tests::masks::*;
 

@@ -9,18 +9,18 @@ use std::sync::Arc;
 
 use rarefy::Monitor;
 use rarefy::Scene;
-use rarefy::device::executor::{Executor, ExecutorInfo, MemoryLimits};
-use rarefy::device::frame_memory::{FrameBuffer, FrameHandle, FrameInputs, FrameSizes};
-use rarefy::device::hooks::parity::KernelParity;
-use rarefy::device::kernels::Mutation;
-use rarefy::device::launch::{Launch, SceneHandle};
-use rarefy::device::opencl::{OpenOptions, Profile};
-use rarefy::device::stage::{Kernel, LAUNCHES, Stage};
-use rarefy::device::twin::executor::TwinExecutor;
-use rarefy::layout::struct_layout;
-use rarefy::method::options::{GcolSpace, Interpolation, Method, Mode, RenderOptions, TestSet};
-use rarefy::prepare::{PreparedScene, Shading};
-use rarefy::scene::builtin;
+use rarefy::internal::device::executor::{Executor, ExecutorInfo, MemoryLimits};
+use rarefy::internal::device::frame_memory::{FrameBuffer, FrameHandle, FrameInputs, FrameSizes};
+use rarefy::internal::device::hooks::parity::KernelParity;
+use rarefy::internal::device::kernels::Mutation;
+use rarefy::internal::device::launch::{Launch, SceneHandle};
+use rarefy::internal::device::opencl::{OpenOptions, Profile};
+use rarefy::internal::device::stage::{Kernel, LAUNCHES, Stage};
+use rarefy::internal::device::twin::executor::TwinExecutor;
+use rarefy::internal::layout::struct_layout;
+use rarefy::internal::method::options::{GcolSpace, Interpolation, Method, Mode, RenderOptions, TestSet};
+use rarefy::internal::prepare::{PreparedScene, Shading};
+use rarefy::internal::scene::builtin;
 use rarefy_host_tests::fixtures::{blocks, corrections, sweeps, with};
 use rarefy_host_tests::frames::{Prepared, device, mutated_device, no_opencl, twin, zoo};
 
@@ -267,7 +267,7 @@ fn real_scenes_are_drawn_alike() {
     let mut scenes: Vec<_> = folder.read_dir().unwrap().map(|e| e.unwrap().path()).filter(|p| p.is_dir()).collect();
     scenes.sort();
     for path in scenes {
-        let load = |path: &Path| rarefy::scene::load(path, &Monitor::default()).unwrap();
+        let load = |path: &Path| rarefy::internal::scene::load(path, &Monitor::default()).unwrap();
         let prepared = Prepared::new(load(&path), Shading::Full);
         let mut device = device(true, &OpenOptions::default());
         for options in [full(&sized(512, 512)), sized(512, 512), RenderOptions { method: blocks(4), ..sized(512, 512) }]
@@ -325,7 +325,7 @@ impl Executor for Tampered {
         self.inner.prefers_few_launches()
     }
 
-    fn traversal(&self) -> rarefy::layout::Traversal {
+    fn traversal(&self) -> rarefy::internal::layout::Traversal {
         self.inner.traversal()
     }
     fn upload(&mut self, scene: &Arc<PreparedScene>) -> rarefy::Result<SceneHandle> {

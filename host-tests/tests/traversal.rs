@@ -8,19 +8,19 @@ use std::collections::BTreeSet;
 use glam::Vec3;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngSeed};
-use rarefy::device::executor::Executor;
-use rarefy::device::frame_memory::FrameBuffer;
-use rarefy::device::opencl::OpenOptions;
-use rarefy::device::stage::LAUNCHES;
-use rarefy::device::twin::SceneArgs;
-use rarefy::device::twin::executor::TwinExecutor;
-use rarefy::device::twin::scene_args::Work;
-use rarefy::device::twin::traverse::{Hit, any_hit, closest_hit};
-use rarefy::layout::Traversal;
-use rarefy::method::options::{Mode, RenderOptions};
-use rarefy::prepare::Shading;
-use rarefy::prepare::kdtree::{KdNode, KdTree, MAX_DEPTH};
-use rarefy::scene::{Scene, Surface};
+use rarefy::internal::device::executor::Executor;
+use rarefy::internal::device::frame_memory::FrameBuffer;
+use rarefy::internal::device::opencl::OpenOptions;
+use rarefy::internal::device::stage::LAUNCHES;
+use rarefy::internal::device::twin::SceneArgs;
+use rarefy::internal::device::twin::executor::TwinExecutor;
+use rarefy::internal::device::twin::scene_args::Work;
+use rarefy::internal::device::twin::traverse::{Hit, any_hit, closest_hit};
+use rarefy::internal::layout::Traversal;
+use rarefy::internal::method::options::{Mode, RenderOptions};
+use rarefy::internal::prepare::Shading;
+use rarefy::internal::prepare::kdtree::{KdNode, KdTree, MAX_DEPTH};
+use rarefy::internal::scene::{Scene, Surface};
 use rarefy_host_tests::fixtures::{Random, SceneBuilder, Stand, blocks, glass, matte, mirror, sweeps, v};
 use rarefy_host_tests::frames::{Prepared, device, no_opencl, twin, walking_by, words};
 
@@ -277,7 +277,8 @@ fn steps_in_real_scenes() {
     scenes.sort();
     println!("steps at 512x512, full / adaptive: private stack, and how many times as many otherwise");
     for path in scenes {
-        let prepared = Prepared::new(rarefy::scene::load(&path, &rarefy::Monitor::default()).unwrap(), Shading::Full);
+        let prepared =
+            Prepared::new(rarefy::internal::scene::load(&path, &rarefy::Monitor::default()).unwrap(), Shading::Full);
         let mut line = format!("{:12}", prepared.scene.name());
         for options in [RenderOptions { mode: Mode::Full, ..sized(512, 512) }, sized(512, 512)] {
             let (least, expected) = steps(&prepared, Traversal::PrivateStack, &options);

@@ -3,12 +3,12 @@
 #![allow(clippy::unwrap_used)]
 
 use glam::{Vec2, Vec3};
-use rarefy::device::twin::ray_tree::fresnel;
-use rarefy::device::twin::shade::sample_texture;
-use rarefy::layout::{NO_OBJECT, PLANE_OBJECT, SURFACE_MIRROR};
-use rarefy::method::options::Mode;
-use rarefy::scene::builtin;
-use rarefy::scene::{Material, Scene, Surface};
+use rarefy::internal::device::twin::ray_tree::fresnel;
+use rarefy::internal::device::twin::shade::sample_texture;
+use rarefy::internal::layout::{NO_OBJECT, PLANE_OBJECT, SURFACE_MIRROR};
+use rarefy::internal::method::options::Mode;
+use rarefy::internal::scene::builtin;
+use rarefy::internal::scene::{Material, Scene, Surface};
 use rarefy_host_tests::fixtures::*;
 
 const RED: Vec3 = Vec3::new(0.9, 0.05, 0.1);

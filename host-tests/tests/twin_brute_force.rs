@@ -8,12 +8,12 @@
 use glam::{DVec3, Vec2, Vec3};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngSeed};
-use rarefy::device::twin::SceneArgs;
-use rarefy::device::twin::scene_args::Work;
-use rarefy::device::twin::traverse::{any_hit, closest_hit};
-use rarefy::layout::{NO_TRIANGLE, Traversal};
-use rarefy::prepare::kdtree::KdNode;
-use rarefy::scene::{Material, Scene, Surface};
+use rarefy::internal::device::twin::SceneArgs;
+use rarefy::internal::device::twin::scene_args::Work;
+use rarefy::internal::device::twin::traverse::{any_hit, closest_hit};
+use rarefy::internal::layout::{NO_TRIANGLE, Traversal};
+use rarefy::internal::prepare::kdtree::KdNode;
+use rarefy::internal::scene::{Material, Scene, Surface};
 use rarefy_host_tests::fixtures::{Random, SceneBuilder, Stand, matte, v};
 
 fn corners(scene: &Scene, id: usize) -> [Vec3; 3] {

@@ -5,13 +5,13 @@
 use std::sync::Arc;
 
 use glam::Vec3;
-use rarefy::device::open::{DeviceChoice, DeviceOptions};
-use rarefy::layout::PLANE_OBJECT;
-use rarefy::method::counts::Keep;
-use rarefy::method::options::RenderOptions;
-use rarefy::prepare::{PreparedScene, Shading};
-use rarefy::render::renderer::Renderer;
-use rarefy::scene::{Light, MAX_LIGHTS, View, builtin};
+use rarefy::internal::device::open::{DeviceChoice, DeviceOptions};
+use rarefy::internal::layout::PLANE_OBJECT;
+use rarefy::internal::method::counts::Keep;
+use rarefy::internal::method::options::RenderOptions;
+use rarefy::internal::prepare::{PreparedScene, Shading};
+use rarefy::internal::render::renderer::Renderer;
+use rarefy::internal::scene::{Light, MAX_LIGHTS, View, builtin};
 use rarefy::{Error, Monitor, Scene};
 use rarefy_host_tests::frames::{no_opencl, renderer_of};
 

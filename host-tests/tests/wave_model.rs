@@ -2,15 +2,15 @@
 //! The wave model says the same of a frame on every executor, and profiles do not change the picture.
 #![allow(clippy::unwrap_used, missing_docs)]
 
-use rarefy::analysis::wave_model::wave_model;
-use rarefy::device::open::{DeviceChoice, DeviceOptions};
-use rarefy::device::profiles::Profile;
-use rarefy::device::stage::Stage;
-use rarefy::layout::Traversal;
-use rarefy::method::counts::Keep;
-use rarefy::method::options::{Mode, RenderOptions};
-use rarefy::render::renderer::Renderer;
-use rarefy::scene::builtin;
+use rarefy::internal::analysis::wave_model::wave_model;
+use rarefy::internal::device::open::{DeviceChoice, DeviceOptions};
+use rarefy::internal::device::profiles::Profile;
+use rarefy::internal::device::stage::Stage;
+use rarefy::internal::layout::Traversal;
+use rarefy::internal::method::counts::Keep;
+use rarefy::internal::method::options::{Mode, RenderOptions};
+use rarefy::internal::render::renderer::Renderer;
+use rarefy::internal::scene::builtin;
 use rarefy_host_tests::fixtures::with;
 use rarefy_host_tests::frames::{no_opencl, renderer_of, walking_by};
 
@@ -55,7 +55,7 @@ fn both_back_ends_and_profiles_agree() {
     }
     assert!(phone.full[0].lanes > expected.full[0].lanes);
     // Negative control: another frame is another model.
-    let other = with(&options(), |method| method.correction = rarefy::method::options::Correction::Off);
+    let other = with(&options(), |method| method.correction = rarefy::internal::method::options::Correction::Off);
     assert_ne!(wave_model(&mut twin, &other).unwrap(), expected);
 }
 

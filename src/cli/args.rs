@@ -6,11 +6,11 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use rarefy::device::open::{DeviceChoice, DeviceOptions};
-use rarefy::device::profiles::Profile;
-use rarefy::error::Setting;
-use rarefy::method::options::{Mode, RenderOptions};
-use rarefy::prepare::Shading;
+use rarefy::internal::device::open::{DeviceChoice, DeviceOptions};
+use rarefy::internal::device::profiles::Profile;
+use rarefy::internal::error::Setting;
+use rarefy::internal::method::options::{Mode, RenderOptions};
+use rarefy::internal::prepare::Shading;
 use rarefy::{Error, Result};
 
 use super::method::MethodArgs;

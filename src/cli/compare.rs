@@ -3,16 +3,16 @@
 
 use std::path::Path;
 
-use rarefy::analysis::compare::{Comparison, compare};
-use rarefy::analysis::layers;
-use rarefy::analysis::metrics::{CUSTOMARY_GAIN, Rgb8, difference_picture};
-use rarefy::analysis::report::CompareReport;
-use rarefy::analysis::wave_model::wave_model;
-use rarefy::analysis::wave_model::{StageCost, WAVES, WaveModel};
-use rarefy::device::stage::Stage;
-use rarefy::method::options::{Mode, RenderOptions};
-use rarefy::render::picture::write_png;
-use rarefy::render::renderer::Renderer;
+use rarefy::internal::analysis::compare::{Comparison, compare};
+use rarefy::internal::analysis::layers;
+use rarefy::internal::analysis::metrics::{CUSTOMARY_GAIN, Rgb8, difference_picture};
+use rarefy::internal::analysis::report::CompareReport;
+use rarefy::internal::analysis::wave_model::wave_model;
+use rarefy::internal::analysis::wave_model::{StageCost, WAVES, WaveModel};
+use rarefy::internal::device::stage::Stage;
+use rarefy::internal::method::options::{Mode, RenderOptions};
+use rarefy::internal::render::picture::write_png;
+use rarefy::internal::render::renderer::Renderer;
 use rarefy::{Cancel, Error, Result};
 
 use super::args::CompareArgs;

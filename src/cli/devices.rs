@@ -4,11 +4,11 @@
 use std::path::Path;
 
 use rarefy::Result;
-use rarefy::device::opencl::executor::{scan_group, work_group};
-use rarefy::device::opencl::{DeviceFound, Limits, Profile, discover};
-use rarefy::device::profiles::MemoryPath;
-use rarefy::device::stage::Stage;
-use rarefy::render::renderer::DEFAULT_BUDGET_BYTES;
+use rarefy::internal::device::opencl::executor::{scan_group, work_group};
+use rarefy::internal::device::opencl::{DeviceFound, Limits, Profile, discover};
+use rarefy::internal::device::profiles::MemoryPath;
+use rarefy::internal::device::stage::Stage;
+use rarefy::internal::render::renderer::DEFAULT_BUDGET_BYTES;
 
 use super::args::{DevicesArgs, profile};
 use super::output::{say, write_json};

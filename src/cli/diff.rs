@@ -2,8 +2,8 @@
 //! `rarefy diff`.
 
 use rarefy::Result;
-use rarefy::analysis::metrics::{CUSTOMARY_GAIN, Rgb8, compare, difference_picture};
-use rarefy::render::picture::{read_rgb8, write_png};
+use rarefy::internal::analysis::metrics::{CUSTOMARY_GAIN, Rgb8, compare, difference_picture};
+use rarefy::internal::render::picture::{read_rgb8, write_png};
 use serde::Serialize;
 
 use super::args::DiffArgs;

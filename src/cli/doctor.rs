@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use rarefy::Result;
-use rarefy::scene::doctor::{Severity, examine};
+use rarefy::internal::scene::doctor::{Severity, examine};
 use serde::Serialize;
 
 use super::args::DoctorArgs;

@@ -2,7 +2,7 @@
 //! Errors of the library in the command's words: one line, with the options that would help.
 
 use rarefy::Error;
-use rarefy::error::{Remedy, Setting};
+use rarefy::internal::error::{Remedy, Setting};
 
 /// The option that gives a setting.
 fn option(setting: Setting) -> Option<&'static str> {

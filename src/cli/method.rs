@@ -2,7 +2,7 @@
 //! The options that choose a method, each for one field of it.
 
 use clap::Args;
-use rarefy::method::options::{
+use rarefy::internal::method::options::{
     Compared, Correction, GcolSpace, Interpolation, Method, Preset, Spread, Test, TextureRule,
 };
 use rarefy::{Error, Result};

@@ -67,7 +67,7 @@ fn dispatch(command: &Command, interrupt: &Interrupt) -> Result<bool> {
         Command::Selftest(args) => selftest::run(args),
         Command::Doctor(args) => doctor::run(args, interrupt).map(|()| true),
         Command::MakeScene(args) => {
-            interrupt.watch(|_| rarefy::scene::builtin::write(&args.name, &args.output))?;
+            interrupt.watch(|_| rarefy::internal::scene::builtin::write(&args.name, &args.output))?;
             output::say(None, &args.output.display().to_string());
             Ok(true)
         }

@@ -4,7 +4,8 @@
 use std::io::Write;
 use std::path::Path;
 
-use rarefy::{Error, Result, files};
+use rarefy::internal::files;
+use rarefy::{Error, Result};
 use serde::Serialize;
 
 /// What stands for standard output as the name of a file.

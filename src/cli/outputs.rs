@@ -4,7 +4,8 @@
 
 use std::path::{Path, PathBuf};
 
-use rarefy::{Error, Result, files};
+use rarefy::internal::files;
+use rarefy::{Error, Result};
 
 use super::output::STANDARD_OUTPUT;
 

@@ -6,12 +6,12 @@ use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use rarefy::device::open::DeviceOptions;
-use rarefy::monitor::{Event, Monitor};
-use rarefy::prepare::{PreparedScene, Shading};
-use rarefy::render::renderer::Renderer;
-use rarefy::scene::doctor::notices;
-use rarefy::scene::{self, builtin};
+use rarefy::internal::device::open::DeviceOptions;
+use rarefy::internal::monitor::{Event, Monitor};
+use rarefy::internal::prepare::{PreparedScene, Shading};
+use rarefy::internal::render::renderer::Renderer;
+use rarefy::internal::scene::doctor::notices;
+use rarefy::internal::scene::{self, builtin};
 use rarefy::{Result, Scene};
 
 use super::interrupt::Interrupt;

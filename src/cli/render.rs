@@ -4,11 +4,11 @@
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
-use rarefy::analysis::layers::{self, Layer};
-use rarefy::analysis::report::RenderReport;
-use rarefy::method::counts::Keep;
-use rarefy::method::options::Mode;
-use rarefy::render::picture::write_png;
+use rarefy::internal::analysis::layers::{self, Layer};
+use rarefy::internal::analysis::report::RenderReport;
+use rarefy::internal::method::counts::Keep;
+use rarefy::internal::method::options::Mode;
+use rarefy::internal::render::picture::write_png;
 use rarefy::{Error, Result};
 
 use super::args::RenderArgs;

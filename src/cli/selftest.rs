@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! `rarefy selftest`.
 
-use rarefy::device::open::DeviceOptions;
-use rarefy::device::stage::Stage;
-use rarefy::selftest::full as selftest;
+use rarefy::internal::device::open::DeviceOptions;
+use rarefy::internal::device::stage::Stage;
+use rarefy::internal::selftest::full as selftest;
 use rarefy::{Error, Result};
 
 use super::args::{SelftestArgs, profile};

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! A drawn frame and what it cost.
 
+use std::path::Path;
+
+use super::picture::write_png;
 use crate::device::stage::Stage;
+use crate::error::Result;
 use crate::method::counts::{PixelCounts, RayCounts, WorkCounts};
 
 /// A picture with its statistics.
@@ -15,6 +19,16 @@ pub struct Frame {
     pub pixels: Vec<u32>,
     /// What it cost.
     pub stats: FrameStats,
+}
+
+impl Frame {
+    /// Writes the picture as a PNG file, whole or not at all.
+    ///
+    /// # Errors
+    /// A file that cannot be written.
+    pub fn write_png(&self, path: impl AsRef<Path>) -> Result<()> {
+        write_png(path, self.width, self.height, &self.pixels)
+    }
 }
 
 /// What a frame cost.

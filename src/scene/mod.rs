@@ -39,12 +39,12 @@ impl Scene {
     ///
     /// ```
     /// use glam::{Vec2, Vec3};
-    /// use rarefy::scene::{Material, Object, SceneParts};
+    /// use rarefy::internal::scene::{Material, Object, SceneParts};
     ///
     /// let mut parts = SceneParts {
     ///     positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y],
     ///     triangles: vec![[0, 1, 2]],
-    ///     corner_normals: vec![[rarefy::math::pack_normal(Vec3::Z); 3]],
+    ///     corner_normals: vec![[rarefy::internal::math::pack_normal(Vec3::Z); 3]],
     ///     corner_texcoords: vec![[Vec2::ZERO; 3]],
     ///     triangle_objects: vec![0],
     ///     objects: vec![Object { name: "triangle".into(), material: 0 }],

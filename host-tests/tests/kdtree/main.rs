@@ -12,8 +12,8 @@ use glam::Vec3;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngSeed};
 use rarefy::Error;
-use rarefy::monitor::{Cancel, Event, Monitor};
-use rarefy::prepare::kdtree::{BuildOptions, KdNode, KdTree, MAX_BYTES_PER_TRIANGLE, MAX_DEPTH};
+use rarefy::internal::monitor::{Cancel, Event, Monitor};
+use rarefy::internal::prepare::kdtree::{BuildOptions, KdNode, KdTree, MAX_BYTES_PER_TRIANGLE, MAX_DEPTH};
 
 use meshes::{Mesh, awkward_meshes, flat_grid, joined, positions_and_faces, random_soup, soup, sphere};
 

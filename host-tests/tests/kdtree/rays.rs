@@ -2,7 +2,7 @@
 //! Rays through the tree, in the plainest way, against brute force: the tree alone must make them agree.
 
 use glam::Vec3;
-use rarefy::prepare::kdtree::{BuildOptions, KdNode, KdTree};
+use rarefy::internal::prepare::kdtree::{BuildOptions, KdNode, KdTree};
 
 use crate::build;
 use crate::meshes::{Mesh, Random, awkward_meshes};

@@ -124,7 +124,7 @@ pub(super) fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Opens a device: number `index` of [`super::discover`], else the best, under a profile's limits if one is given.
+/// Opens a device: number `index` of those discovered, else the best, under a profile's limits if one is given.
 ///
 /// Without a usable device the error is [`Error::NoOpenCl`] and lists everything that was tried.
 pub fn open(index: Option<usize>, profile: Option<&Profile>) -> Result<Door> {

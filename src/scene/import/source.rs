@@ -21,9 +21,9 @@ use crate::{Error, Result};
 /// let files: BTreeMap<String, Vec<u8>> =
 ///     [("scene.obj".into(), b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n".to_vec())].into();
 /// let (options, monitor) = (Default::default(), Default::default());
-/// let scene = rarefy::scene::load_from("scene.obj", &files, &options, &monitor)?;
+/// let scene = rarefy::internal::scene::load_from("scene.obj", &files, &options, &monitor)?;
 /// let open = |name: &str| Ok(files.get(name).cloned());
-/// assert_eq!(rarefy::scene::load_from("scene.obj", &open, &options, &monitor)?, scene);
+/// assert_eq!(rarefy::internal::scene::load_from("scene.obj", &open, &options, &monitor)?, scene);
 /// # Ok::<(), rarefy::Error>(())
 /// ```
 pub trait FileSource {
