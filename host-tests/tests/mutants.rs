@@ -65,7 +65,11 @@ impl Shot {
             Shot::Rods | Shot::RodsSwept | Shot::RodsInBands => (options.width, options.height) = (100, 75),
             Shot::Strictest => options.method.checks.fine.t_pos = 0.0,
             // Large enough that smooth glass, slopes and faint shadows are interpolated too.
-            Shot::Zoo => (options.width, options.height, options.depth) = (180, 136, 3),
+            // Shadows that count where they are seen are drawn here alone.
+            Shot::Zoo => {
+                (options.width, options.height, options.depth) = (180, 136, 3);
+                options.method.checks.t_shadow = 12;
+            }
             Shot::Dashes | Shot::DashesInBands => (options.width, options.height) = (64, 64),
             Shot::Room | Shot::ZooShort | Shot::ZooStackless => {}
             Shot::Paper => options.method = Method::paper(),

@@ -60,7 +60,7 @@ impl Method {
                 coarse: Tolerances::COARSE,
                 textures: TextureRule::Joined,
                 gcol_space: GcolSpace::Display,
-                t_shadow: 12,
+                t_shadow: 0,
                 second_pairs: true,
             },
             interpolation: Interpolation::Perspective,
