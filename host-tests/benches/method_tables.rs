@@ -78,7 +78,7 @@ fn tables() -> Vec<(&'static str, Vec<Variant>)> {
         ("presets", Preset::ALL.map(|p| (p.to_string(), p.into())).into()),
         ("fast-shadows", [0, 4, 8, 12].map(fast_shadow).into()),
         ("shadows", [0, 4, 8, 12].map(shadow).into()),
-        ("fast-scaled", vec![scaled("exact fast", fast_shadow(0).1, 1.5), scaled("exact fast", fast_shadow(0).1, 2.0)]),
+        ("fast-scaled", [1.0, 1.5, 2.0].map(|factor| scaled("fast", Method::fast(), factor)).into()),
         ("paper", vec![ours("the paper's tolerances in our rules", |m| m.checks.fine = Tolerances::PAPER)]),
         (
             "rules",
