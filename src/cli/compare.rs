@@ -17,7 +17,7 @@ use rarefy::{Cancel, Error, Result};
 
 use super::args::CompareArgs;
 use super::interrupt::Interrupt;
-use super::output::{say, warn_all, write_json};
+use super::output::{say, traced, warn_all, write_json};
 use super::outputs::Outputs;
 use super::progress::{make_renderer, watched};
 
@@ -93,9 +93,8 @@ fn table(renderer: &mut Renderer, options: &RenderOptions, c: &Comparison) -> Ve
         ),
         format!("  work       {:.2} times less (traversal steps and triangle tests)", c.work_speedup()),
         format!(
-            "  traced     {:.2} % of the pixels, {:.2} % with correction (base {:.2} %, failed checks {:.2} %)",
-            100.0 * c.adaptive.ray_traced_ratio(),
-            100.0 * c.adaptive.ray_traced_ratio_with_correction(),
+            "  traced     {} (base {:.2} %, failed checks {:.2} %)",
+            traced(&c.adaptive),
             100.0 * p.base as f64 / all,
             100.0 * p.traced as f64 / all
         ),

@@ -5,7 +5,7 @@ use std::io::Write;
 use std::path::Path;
 
 use rarefy::internal::files;
-use rarefy::{Error, Result};
+use rarefy::{Error, FrameStats, Result};
 use serde::Serialize;
 
 /// What stands for standard output as the name of a file.
@@ -40,6 +40,16 @@ pub fn complain(line: &str) {
 /// Prints a line to standard error. One that cannot be written to is no reason to lose a picture.
 fn to_stderr(line: &str) {
     let _ = writeln!(std::io::stderr(), "{line}");
+}
+
+/// The share of traced pixels, in the words that every command uses.
+pub fn traced(stats: &FrameStats) -> String {
+    let percent = |ratio: f64| 100.0 * ratio;
+    format!(
+        "{:.2} % of the pixels, {:.2} % with correction",
+        percent(stats.ray_traced_ratio()),
+        percent(stats.ray_traced_ratio_with_correction())
+    )
 }
 
 /// Prints notices and warnings to standard error; long lists are cut.

@@ -13,7 +13,7 @@ use rarefy::{Error, Result};
 
 use super::args::RenderArgs;
 use super::interrupt::Interrupt;
-use super::output::{say, warn_all, write_json};
+use super::output::{say, traced, warn_all, write_json};
 use super::outputs::Outputs;
 use super::progress::{make_renderer, watched};
 
@@ -60,13 +60,13 @@ pub fn run(args: &RenderArgs, interrupt: &Interrupt) -> Result<()> {
     say(
         json,
         &format!(
-            "{}: {}x{} on {} in {:.0} ms, {:.1} % of the pixels traced",
+            "{}: {}x{} on {} in {:.0} ms, traced {}",
             args.output.display(),
             frame.width,
             frame.height,
             info.name,
             frame.stats.frame_ms,
-            100.0 * frame.stats.ray_traced_ratio_with_correction()
+            traced(&frame.stats)
         ),
     );
     if frame.stats.fell_back {
