@@ -262,7 +262,7 @@ impl std::fmt::Display for Remedy {
 fn in_brackets(remedies: &[Remedy]) -> String {
     let words: Vec<String> = remedies.iter().map(Remedy::to_string).collect();
     let words: Vec<&str> = words.iter().map(String::as_str).collect();
-    if words.is_empty() { String::new() } else { format!(" (use {})", crate::names::list(&words)) }
+    if words.is_empty() { String::new() } else { format!(" (use {})", crate::settings::list(&words)) }
 }
 
 impl Error {

@@ -32,7 +32,7 @@ macro_rules! named {
             fn from_str(text: &str) -> $crate::error::Result<Self> {
                 $crate::names::find(&Self::NAMES, text).map(|at| Self::ALL[at]).ok_or_else(|| {
                     let setting = $crate::error::Setting::$setting;
-                    $crate::error::Error::option(setting, text, $crate::names::list(&Self::NAMES))
+                    $crate::error::Error::option(setting, text, $crate::settings::list(&Self::NAMES))
                 })
             }
         }
@@ -45,19 +45,8 @@ pub(crate) fn find(names: &[&str], name: &str) -> Option<usize> {
     names.iter().position(|known| known.eq_ignore_ascii_case(name))
 }
 
-/// `a, b or c`.
-pub(crate) fn list(names: &[&str]) -> String {
-    match names {
-        [] => String::new(),
-        [one] => (*one).to_owned(),
-        [first @ .., last] => format!("{} or {last}", first.join(", ")),
-    }
-}
-
 #[cfg(test)]
 mod tests {
-    use super::list;
-
     #[derive(Debug, Clone, Copy, PartialEq)]
     enum Fruit {
         Apple,
@@ -74,11 +63,5 @@ mod tests {
         assert_eq!(format!("{:>6}|", Fruit::Pear), "  pear|");
         let error = "plum".parse::<Fruit>().unwrap_err().to_string();
         assert_eq!(error, "layer: `plum` is not allowed; it may be apple or pear");
-    }
-
-    #[test]
-    fn lists_read_as_sentences() {
-        assert_eq!(list(&["a"]), "a");
-        assert_eq!(list(&["a", "b", "c"]), "a, b or c");
     }
 }

@@ -2,7 +2,7 @@
 //! The shape of the source tree: data and modules point one way, documents name what exists, files stay small.
 #![allow(clippy::unwrap_used, missing_docs)]
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use rarefy_host_tests::command::root;
@@ -15,7 +15,9 @@ const LAYERS: &[&[&str]] = &[
     &["prepare"],
     &["device"],
     &["method"],
-    &["render", "selftest", "analysis"],
+    &["selftest"],
+    &["render"],
+    &["analysis"],
 ];
 
 fn layer(module: &str) -> Option<usize> {
@@ -87,13 +89,107 @@ fn modules_use_only_what_comes_before_them() {
         wrong.extend(wrong_way(&file, &text));
         // The command is a user of the library, and its only one that knows the terminal.
         assert!(outside || !text.contains("clap::") && !text.contains("indicatif::"), "{file} knows the command line");
-        assert!(file.starts_with("src/device/opencl/") || !text.contains("opencl3::"), "{file} goes round the door");
+        assert!(
+            file.starts_with("src/device/opencl/") || file == "src/device/queries.rs" || !text.contains("opencl3::"),
+            "{file} calls OpenCL"
+        );
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
     // The check can fail.
     assert_eq!(wrong_way("src/scene/import/load.rs", "use crate::render::renderer::Renderer;").len(), 1);
     assert_eq!(wrong_way("src/scene/import/load.rs", "use crate::{error, device::twin};").len(), 1);
     assert!(wrong_way("src/render/renderer.rs", "use crate::scene::Scene;").is_empty());
+}
+
+/// The module of a source file, to its second level: `src/device/twin/pack.rs` is `device::twin`.
+fn second_level(file: &str) -> String {
+    let path = file.strip_prefix("src/").unwrap().strip_suffix(".rs").unwrap();
+    let parts: Vec<&str> = path.split('/').filter(|part| *part != "mod").collect();
+    parts[..parts.len().min(2)].join("::")
+}
+
+/// What a file uses of the library, to the second level where `known` has such a module: by `crate::a::b`,
+/// `crate::a::{b, c}` and, in a file of a folder of the first level, `super::b`.
+fn used_second_level(file: &str, text: &str, known: &BTreeSet<String>) -> BTreeSet<String> {
+    let own = second_level(file);
+    let text = text.split("#[cfg(test)]").next().unwrap();
+    let code: String = text.lines().filter(|l| !l.trim_start().starts_with("//")).collect::<Vec<_>>().join("\n");
+    let name = |text: &str| text.trim().chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect::<String>();
+    let mut used: BTreeSet<String> = used_modules(text).into_iter().filter(|module| known.contains(module)).collect();
+    let mut take = |first: &str, rest: &str| {
+        let list = rest.strip_prefix('{').map(|list| list.split('}').next().unwrap());
+        for part in list.unwrap_or(rest).split(if list.is_some() { ',' } else { '\0' }) {
+            used.insert(format!("{first}::{}", name(part)));
+        }
+    };
+    for (at, _) in code.match_indices("crate::") {
+        let rest = &code[at + "crate::".len()..];
+        if let Some((first, rest)) = rest.split_once("::").filter(|(first, _)| name(first) == *first) {
+            take(first, rest);
+        }
+    }
+    if let (Some((first, _)), 2) = (own.split_once("::"), file.matches('/').count()) {
+        for (at, _) in code.match_indices("super::") {
+            take(first, &code[at + "super::".len()..]);
+        }
+    }
+    used.into_iter().filter(|module| known.contains(module) && *module != own).collect()
+}
+
+type Graph = BTreeMap<String, BTreeSet<String>>;
+
+/// The longest chain of uses from `module` on, itself included; an error if it comes back to a module of `way`.
+fn longest_chain(graph: &Graph, module: &str, way: &mut Vec<String>) -> Result<Vec<String>, String> {
+    if way.iter().any(|before| before == module) {
+        return Err(format!("{} -> {module}", way.join(" -> ")));
+    }
+    way.push(module.to_owned());
+    let mut longest = Vec::new();
+    for used in graph.get(module).into_iter().flatten() {
+        let chain = longest_chain(graph, used, way)?;
+        longest = if chain.len() > longest.len() { chain } else { longest };
+    }
+    way.pop();
+    longest.insert(0, module.to_owned());
+    Ok(longest)
+}
+
+fn longest_of_all(graph: &Graph) -> Result<Vec<String>, String> {
+    let chains: Result<Vec<_>, _> = graph.keys().map(|module| longest_chain(graph, module, &mut Vec::new())).collect();
+    Ok(chains?.into_iter().max_by_key(Vec::len).unwrap())
+}
+
+#[test]
+fn no_module_uses_itself_by_way_of_others_and_chains_are_short() {
+    let files: Vec<_> = sources("src", &["rs"])
+        .into_iter()
+        .filter(|(file, _)| !file.starts_with("src/cli/") && !["src/lib.rs", "src/main.rs"].contains(&file.as_str()))
+        .collect();
+    let known: BTreeSet<String> = files.iter().map(|(file, _)| second_level(file)).collect();
+    let (mut modules, mut folders) = (Graph::new(), Graph::new());
+    for (file, text) in &files {
+        let (own, used) = (second_level(file), used_second_level(file, text, &known));
+        let top = |module: &str| module.split("::").next().unwrap().to_owned();
+        let tops = used.iter().map(|module| top(module)).filter(|used| *used != top(&own));
+        folders.entry(top(&own)).or_default().extend(tops);
+        modules.entry(own).or_default().extend(used);
+    }
+    let chain = longest_of_all(&folders).unwrap();
+    println!("{} top-level modules: {}", chain.len(), chain.join(" -> "));
+    assert!(chain.len() <= 11, "{chain:?}");
+    let chain = longest_of_all(&modules).unwrap();
+    println!("{} modules: {}", chain.len(), chain.join(" -> "));
+    assert!(chain.len() <= 13, "{chain:?}");
+    // Addresses and sizes are the layout's: only executors know the twin.
+    let users = modules.iter().filter(|(_, used)| used.contains("device::twin")).map(|(module, _)| module.as_str());
+    let allowed = ["render::renderer", "selftest::full", "selftest::quick"];
+    assert_eq!(users.filter(|user| !allowed.contains(user)).collect::<Vec<_>>(), [""; 0], "use the twin");
+    // The checks can fail.
+    let circle = Graph::from([("a".into(), ["b".to_owned()].into()), ("b".into(), ["a".to_owned()].into())]);
+    assert_eq!(longest_of_all(&circle).unwrap_err(), "a -> b -> a");
+    let known = ["device::twin", "device::opencl", "error"].map(String::from).into();
+    let text = "use crate::device::{twin, other};\nuse crate::error::Error;\nuse super::opencl::X;";
+    assert_eq!(used_second_level("src/device/launch.rs", text, &known), known);
 }
 
 /// Options of the command that a text words.
@@ -135,9 +231,12 @@ fn named_paths(text: &str) -> Vec<String> {
 
 #[test]
 fn every_path_that_the_documents_name_exists() {
-    for document in ["README.md", "ARCHITECTURE.md", "CONTRIBUTING.md"] {
-        // Documents that are not written yet name nothing.
-        let Ok(text) = std::fs::read_to_string(root().join(document)) else { continue };
+    let always =
+        ["README.md", "ARCHITECTURE.md", "CONTRIBUTING.md", "CHANGELOG.md", "kernels/README.md", "scenes/README.md"];
+    let folder = sources("docs", &["md"]).into_iter().map(|(document, _)| document);
+    for document in always.into_iter().map(String::from).chain(folder) {
+        let text =
+            std::fs::read_to_string(root().join(&document)).unwrap_or_else(|error| panic!("{document}: {error}"));
         for path in named_paths(&text) {
             assert!(root().join(&path).exists(), "{document} names {path}, which is not there");
         }

@@ -5,7 +5,7 @@
 #![allow(clippy::unwrap_used)]
 
 use rarefy::internal::device::frame_memory::FrameBuffer;
-use rarefy::internal::device::launch::Queue;
+use rarefy::internal::device::queue::Queue;
 use rarefy::internal::device::stage::{Kernel, Stage};
 use rarefy::internal::layout::*;
 use rarefy::internal::method::options::{Compared, Correction, Mode, RenderOptions, Spread};

@@ -8,9 +8,10 @@ use crate::layout::*;
 use crate::math::unpack_normal;
 use crate::method::counts::Keep;
 use crate::method::options::Test;
-use crate::names::{find, list};
+use crate::names::find;
 use crate::render::frame::Frame;
 use crate::render::renderer::Renderer;
+use crate::settings::list;
 
 /// A picture of one quantity of a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -8,7 +8,7 @@
 use crate::device::executor::Executor;
 use crate::device::frame_memory::{FrameBuffer, FrameHandle};
 use crate::device::hooks::recording::{RecordedLaunch, Recording};
-use crate::device::launch::Hook;
+use crate::device::queue::Hook;
 use crate::device::stage::{Kernel, Stage};
 use crate::error::{Error, Remedy, Result, Setting};
 use crate::layout::*;

@@ -4,7 +4,6 @@
 use std::any::Any;
 use std::ops::Range;
 
-use super::launch_check::scan_words;
 use crate::error::{Error, Result};
 use crate::layout::*;
 
@@ -168,6 +167,18 @@ pub fn most_listed_pixels(frame: &FrameParams) -> u64 {
     if is_one_window { pixels } else { 2 * pixels }
 }
 
+/// The words of all levels of a scan over `chunks` sums, the count of all included.
+pub(super) fn scan_words(chunks: u64, scan_group: u32) -> u64 {
+    let (mut words, mut level) = (chunks, chunks);
+    loop {
+        level = level.div_ceil(u64::from(scan_group.max(2)));
+        words += level;
+        if level <= 1 {
+            return words;
+        }
+    }
+}
+
 /// The buffers of a frame in an executor's memory, and what the frame is drawn from. They are freed with the handle.
 pub struct FrameHandle {
     inputs: Box<FrameInputs>,
@@ -210,5 +221,18 @@ impl std::fmt::Debug for FrameHandle {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let FrameParams { width, height, window_begin, window_end, .. } = self.inputs.params;
         write!(f, "frame of {width}x{height}, rows {window_begin} to {window_end}, {} bytes", self.sizes.bytes())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sums_hold_every_level() {
+        assert_eq!(scan_words(1, 256), 2);
+        assert_eq!(scan_words(256, 256), 257);
+        assert_eq!(scan_words(257, 256), 257 + 2 + 1);
+        assert_eq!(scan_words(1000, 2), 1000 + 500 + 250 + 125 + 63 + 32 + 16 + 8 + 4 + 2 + 1);
     }
 }

@@ -4,7 +4,7 @@
 //! Kernels trust their parameters. A launch whose items or ranges do not fit is refused here, with the numbers, by every
 //! executor, before it can overwrite anything.
 
-use super::frame_memory::FrameSizes;
+use super::frame_memory::{FrameSizes, scan_words};
 use super::stage::{Binding, Items, Kernel, Stage};
 use crate::error::{Error, Result};
 use crate::layout::*;
@@ -94,18 +94,6 @@ pub fn check_launch(
 fn sources_end(step: &StepParams) -> u64 {
     let ways = if step.flags & STEP_BRIDGE != 0 { STEP4_WAYS_MOST } else { 4 };
     u64::from(step.source_offset) + u64::from(step.item_count.div_ceil(ways))
-}
-
-/// The words of all levels of a scan over `chunks` sums, the count of all included.
-pub(super) fn scan_words(chunks: u64, scan_group: u32) -> u64 {
-    let (mut words, mut level) = (chunks, chunks);
-    loop {
-        level = level.div_ceil(u64::from(scan_group.max(2)));
-        words += level;
-        if level <= 1 {
-            return words;
-        }
-    }
 }
 
 #[cfg(test)]
@@ -204,13 +192,5 @@ mod tests {
         assert!(lacks(SCAN, level, &FrameSizes { sums: 497, ..fits }).is_some());
         assert!(lacks(SCAN, level, &FrameSizes { sums: 498, ..fits }).is_none());
         assert!(lacks(SWEEP, StepParams { item_count: 65, ..step }, &fits).is_some());
-    }
-
-    #[test]
-    fn sums_hold_every_level() {
-        assert_eq!(scan_words(1, 256), 2);
-        assert_eq!(scan_words(256, 256), 257);
-        assert_eq!(scan_words(257, 256), 257 + 2 + 1);
-        assert_eq!(scan_words(1000, 2), 1000 + 500 + 250 + 125 + 63 + 32 + 16 + 8 + 4 + 2 + 1);
     }
 }

@@ -11,5 +11,7 @@ pub mod launch_check;
 pub mod open;
 pub mod opencl;
 pub mod profiles;
+mod queries;
+pub mod queue;
 pub mod stage;
 pub mod twin;

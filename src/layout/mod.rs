@@ -9,7 +9,7 @@ mod tables;
 
 pub use constants::*;
 pub use flavour::{BuildFlavour, SHORT_STACK_ENTRIES, Traversal, build_options};
-pub use planes::{color_index, plane_index};
+pub use planes::{color_index, grid_items, plane_index};
 pub use structs::{FrameParams, Light, Material, StepParams, Texture, Triangle, TriangleShading};
 pub use structs::{LayoutEntry, struct_layout};
 pub use tables::tables;

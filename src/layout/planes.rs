@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Where a pixel lies in the buffers of a frame: planes by phase, colours row by row.
 
-use super::structs::FrameParams;
+use super::{FrameParams, PACK_TILE_SIDE, StepParams};
 
 /// Where pixel `(x, y)` lies within a plane.
 #[inline]
@@ -17,4 +17,10 @@ pub fn plane_index(frame: &FrameParams, x: u32, y: u32) -> u32 {
 #[inline]
 pub fn color_index(frame: &FrameParams, x: u32, y: u32) -> u32 {
     (y - frame.window_begin) * frame.width + x
+}
+
+/// How many items half of the list has: the grid's tiles, those at its borders whole.
+pub fn grid_items(step: &StepParams) -> u32 {
+    let tiles = step.grid_width.div_ceil(PACK_TILE_SIDE) * step.grid_height.div_ceil(PACK_TILE_SIDE);
+    tiles * PACK_TILE_SIDE * PACK_TILE_SIDE
 }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Post-correction (step4): spreads from traced pixels to interpolated neighbours that disagree.
 
-use super::window::{Packing, SeedRanges, pack, trace_list};
+use super::packing::{Packing, SeedRanges, pack, trace_list};
 use crate::device::frame_memory::{FrameBuffer, most_listed_pixels};
-use crate::device::launch::Queue;
+use crate::device::queue::Queue;
 use crate::device::stage::{Kernel, Stage};
 use crate::error::Result;
 use crate::layout::*;

@@ -8,7 +8,7 @@ use super::bands::{Collected, CounterSums, NewPixels, OpenChains, Plan, sum_coun
 use super::counts::{Keep, PixelCounts};
 use super::window::{CorrectionSeeds, adaptive_window, trace_window};
 use crate::device::frame_memory::{FrameBuffer, FrameInputs};
-use crate::device::launch::Queue;
+use crate::device::queue::Queue;
 use crate::error::{Error, Remedy, Result, Setting};
 use crate::method::options::{Correction, Mode, RenderOptions};
 

@@ -8,4 +8,5 @@ pub mod counts;
 pub mod fallback;
 pub mod frame;
 pub mod options;
+mod packing;
 pub mod window;

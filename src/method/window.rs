@@ -3,10 +3,10 @@
 //! memory is one window; [`super::bands`] draws those that do not.
 
 use super::correction::correct;
+use super::packing::{Packing, SeedRanges, pack, trace_list};
 use crate::device::frame_memory::FrameBuffer;
-use crate::device::launch::Queue;
+use crate::device::queue::Queue;
 use crate::device::stage::{Kernel, Stage};
-use crate::device::twin::pack::grid_items;
 use crate::error::Result;
 use crate::layout::*;
 use crate::method::options::RenderOptions;
@@ -27,13 +27,6 @@ struct AdaptiveStages {
 
 const A1: AdaptiveStages = AdaptiveStages { check: Stage::Step2a, pack: Stage::Step2b, trace: Stage::Step2c };
 const A2: AdaptiveStages = AdaptiveStages { check: Stage::Step3a, pack: Stage::Step3b, trace: Stage::Step3c };
-
-/// A packing: the stage, and the kernels that count and scatter its items.
-pub(super) struct Packing {
-    pub stage: Stage,
-    pub count: Kernel,
-    pub scatter: Kernel,
-}
 
 /// Traces every pixel of a window: step1 at stride 1, by the same kernel. `store` keeps the attributes of all pixels.
 ///
@@ -108,20 +101,6 @@ impl ListRanges {
     }
 }
 
-/// The list's first entries: the seeds.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct SeedRanges {
-    pub settled: u32,
-    pub fired: u32,
-    pub first_time: bool,
-}
-
-impl SeedRanges {
-    pub fn len(&self) -> u32 {
-        self.settled + self.fired
-    }
-}
-
 fn list_seeds(queue: &mut Queue, seeds: &CorrectionSeeds) -> Result<SeedRanges> {
     let settled = seeds.settled.unwrap_or(&[]);
     if !settled.is_empty() || !seeds.fired.is_empty() {
@@ -171,32 +150,4 @@ fn pack_grid(queue: &mut Queue, class: &AdaptiveGrid, list_offset: u32) -> Resul
     let item_count = 2 * grid_items(&class.params);
     let packing = Packing { stage: class.stages.pack, count: Kernel::PackCount, scatter: Kernel::PackScatter };
     pack(queue, &packing, &StepParams { item_count, list_offset, ..class.params })
-}
-
-/// Packs the wanted ones of `item_count` items by count, scan and scatter; returns how many there are.
-pub(super) fn pack(queue: &mut Queue, packing: &Packing, step: &StepParams) -> Result<u32> {
-    if step.item_count == 0 {
-        return Ok(0);
-    }
-    let step = StepParams { scan_group: queue.scan_group(), ..*step };
-    queue.launch(packing.stage, packing.count, &step)?;
-    let (mut level, mut sums_offset) = (step.item_count.div_ceil(32), 0);
-    loop {
-        queue.launch(packing.stage, Kernel::PackScan, &StepParams { item_count: level, sums_offset, ..step })?;
-        sums_offset += level;
-        level = level.div_ceil(step.scan_group);
-        if level == 1 {
-            break;
-        }
-    }
-    let count = queue.read_sum(sums_offset)?;
-    if count > 0 {
-        let step = StepParams { list_end: step.list_offset + count, ..step };
-        queue.launch(packing.stage, packing.scatter, &step)?;
-    }
-    Ok(count)
-}
-
-pub(super) fn trace_list(queue: &mut Queue, stage: Stage, step: &StepParams) -> Result<()> {
-    if step.item_count == 0 { Ok(()) } else { queue.launch(stage, Kernel::Trace, step) }
 }

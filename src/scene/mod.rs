@@ -10,7 +10,6 @@ mod check;
 mod coplanar;
 pub mod doctor;
 mod import;
-mod told;
 
 use glam::{Vec2, Vec3};
 

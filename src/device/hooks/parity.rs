@@ -6,7 +6,8 @@ use std::sync::Arc;
 
 use crate::device::executor::Executor;
 use crate::device::frame_memory::{FrameBuffer, FrameHandle};
-use crate::device::launch::{Hook, Launch, SceneHandle};
+use crate::device::launch::{Launch, SceneHandle};
+use crate::device::queue::Hook;
 use crate::device::stage::{Kernel, Stage};
 use crate::error::{Error, Result};
 use crate::layout::PLANE_GCOL_B;

@@ -3,7 +3,8 @@
 
 use crate::device::executor::Executor;
 use crate::device::frame_memory::{FrameBuffer, FrameHandle};
-use crate::device::launch::{Hook, Launch};
+use crate::device::launch::Launch;
+use crate::device::queue::Hook;
 use crate::device::stage::Stage;
 use crate::error::Result;
 use crate::layout::{FrameParams, color_index};

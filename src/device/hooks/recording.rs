@@ -3,7 +3,8 @@
 
 use crate::device::executor::Executor;
 use crate::device::frame_memory::FrameBuffer;
-use crate::device::launch::{Hook, Launch};
+use crate::device::launch::Launch;
+use crate::device::queue::Hook;
 use crate::device::stage::{Kernel, Stage};
 use crate::error::Result;
 use crate::layout::{StepParams, TAIL_SUM_ENDS, TAIL_SUM_ROUNDS};

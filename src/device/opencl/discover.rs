@@ -14,8 +14,9 @@ use serde::Serialize;
 use serde_json::Value;
 
 use super::limits::{Limits, parse_version};
-use super::{Kind, QUERIES, Query, codes, library};
+use super::{codes, library};
 use crate::device::profiles::{Certainty, Choices, Entry, Profile};
+use crate::device::queries::{Kind, QUERIES, Query};
 
 /// The type of a device, as far as choices depend on it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

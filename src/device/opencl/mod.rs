@@ -18,7 +18,6 @@ mod launch;
 pub mod library;
 mod limits;
 mod program;
-mod queries;
 mod slices;
 mod timing;
 
@@ -32,4 +31,3 @@ pub use limits::Limits;
 pub use program::{Kernel, Program, ProgramSource};
 
 pub use crate::device::profiles::Profile;
-pub(crate) use queries::{Kind, QUERIES, Query};

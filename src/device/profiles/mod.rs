@@ -16,7 +16,7 @@ use serde_json::Value;
 
 pub use choices::{Choices, MemoryPath, Traversal};
 
-use crate::device::opencl::{Kind, Query};
+use crate::device::queries::{Kind, Query};
 use crate::error::Setting;
 use crate::{Error, Result, files};
 

@@ -77,12 +77,6 @@ pub fn scatter(chunk: u32, step: &StepParams, masks: &Words, sums: &Words, list:
     }
 }
 
-/// How many items half of the list has: the grid's tiles, those at its borders whole.
-pub fn grid_items(step: &StepParams) -> u32 {
-    let tiles = step.grid_width.div_ceil(PACK_TILE_SIDE) * step.grid_height.div_ceil(PACK_TILE_SIDE);
-    tiles * PACK_TILE_SIDE * PACK_TILE_SIDE
-}
-
 /// Grid coordinates of item `i` in packing order: x in the low half word, y in the high one.
 pub fn grid_item(step: &StepParams, i: u32) -> u32 {
     let half_items = grid_items(step);

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use crate::device::executor::Executor;
 use crate::device::frame_memory::{FrameBuffer, FrameHandle};
-use crate::device::launch::Queue;
+use crate::device::queue::Queue;
 use crate::error::Result;
 use crate::layout::*;
 use crate::memory;

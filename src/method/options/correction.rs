@@ -5,7 +5,8 @@ use std::str::FromStr;
 
 use super::checks::{DOT_PRODUCT, NOT_NEGATIVE, check};
 use crate::error::{Error, Result, Setting};
-use crate::names::{find, list, named};
+use crate::names::{find, named};
+use crate::settings::list;
 
 /// Post-correction: rays for interpolated neighbours of traced pixels that show something else.
 #[derive(Debug, Clone, Copy, PartialEq)]

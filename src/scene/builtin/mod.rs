@@ -52,7 +52,7 @@ pub fn generate(name: &str) -> Result<Model> {
             include_str!("../../../scenes/mirror-room/view.json"),
         )?,
         _ => {
-            return Err(Error::option(Setting::BuiltinScene, name, crate::names::list(&NAMES)));
+            return Err(Error::option(Setting::BuiltinScene, name, crate::settings::list(&NAMES)));
         }
     };
     model.finish()

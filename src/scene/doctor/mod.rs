@@ -3,15 +3,17 @@
 //!
 //! The doctor reads a finished [`Scene`], so it serves built-in scenes as well as loaded ones.
 
+mod told;
+
 use std::borrow::Cow;
 
-use super::coplanar::{self, Kind};
-use super::import::fit::Extents;
-use super::{Material, Scene, told};
 use crate::error::printable;
 use crate::math::{cross, dot, unpack_normal};
+use crate::scene::coplanar::{self, Kind};
+use crate::scene::import::fit::Extents;
+use crate::scene::{Material, Scene};
 
-pub use super::told::notices;
+pub use told::notices;
 
 /// How much a finding matters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -87,7 +89,7 @@ fn attributes(scene: &Scene, tell: Tell) {
     let total = scene.triangles().len();
     if notes.triangles_without_normals > 0 {
         let share = percent(notes.triangles_without_normals, total);
-        let crease = super::import::normals::CREASE_DEGREES;
+        let crease = crate::scene::import::normals::CREASE_DEGREES;
         let mut message =
             format!("{share} triangles have no normals; computed with a crease angle of {crease} degrees");
         if notes.triangles_smoothed_by_groups > 0 {
@@ -300,9 +302,9 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use glam::{Vec2, Vec3};
 
-    use super::super::{Light, Object, SceneParts, Texture};
     use super::*;
     use crate::math::pack_normal;
+    use crate::scene::{Light, Object, SceneParts, Texture};
 
     /// A sheet of `n` by `n` unit squares in the xy plane, wound counter-clockwise, with a light: nothing is odd.
     fn sheet(n: u32) -> SceneParts {

@@ -5,8 +5,8 @@
 
 use std::collections::BTreeMap;
 
-use super::doctor::{Severity, Tell};
-use super::{LoadNotes, MaterialNote, Scene, Surface, UnusedKey};
+use super::{Severity, Tell};
+use crate::scene::{LoadNotes, MaterialNote, Scene, Surface, UnusedKey};
 
 /// Names and keys that a short line shows of each kind.
 const SHOWN: usize = 3;
@@ -17,7 +17,7 @@ const ALL: usize = 1000;
 /// Keys that a short line shows of each file.
 const KEYS_SHOWN: usize = 8;
 
-/// What the loading of `scene` decided, in a few lines for whoever draws it; [`super::doctor::examine`] says it in full.
+/// What the loading of `scene` decided, in a few lines for whoever draws it; [`super::examine`] says it in full.
 /// Empty for scenes in which nothing is special.
 pub fn notices(scene: &Scene) -> Vec<String> {
     notices_of(scene.notes())
