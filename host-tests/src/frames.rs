@@ -164,8 +164,8 @@ pub fn device(strict: bool, open: &OpenOptions) -> OpenClExecutor {
 /// # Panics
 /// If there is none.
 pub fn mutated_device(strict: bool, open: &OpenOptions, mutation: Option<Mutation>) -> OpenClExecutor {
-    let door = open_with(open).unwrap_or_else(|error| panic!("{error} (or set {WITHOUT_OPENCL}=none)"));
-    OpenClExecutor::new(door, strict, mutation)
+    let context = open_with(open).unwrap_or_else(|error| panic!("{error} (or set {WITHOUT_OPENCL}=none)"));
+    OpenClExecutor::new(context, strict, mutation)
 }
 
 /// All words of one of a frame's buffers.

@@ -4,7 +4,7 @@
 
 pub mod clang;
 pub mod command;
-pub mod doors;
+pub mod contexts;
 pub mod fixtures;
 pub mod frames;
 pub mod masks;

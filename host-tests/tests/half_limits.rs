@@ -104,7 +104,7 @@ fn half_of_each_limit_adapts_or_refuses() {
     let open = OpenOptions { cache: CacheFolder::Off, ..OpenOptions::default() };
     let mut device = device(false, &open);
     prepared.draw(&mut device, &frame(), false).unwrap();
-    let (limits, choices) = (device.door().limits().clone(), device.door().choices().clone());
+    let (limits, choices) = (device.context().limits().clone(), device.context().choices().clone());
     let scan = u64::from(scan_group(&limits));
     let shapes = LAUNCHES.into_iter().filter_map(|(stage, kernel, _)| work_group(&choices, stage, kernel));
     let widest = shapes.clone().flatten().max().unwrap() as u64;

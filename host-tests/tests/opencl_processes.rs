@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! What the door finds and leaves in a process of its own: libraries, platforms, the cache of programs.
+//! What the context finds and leaves in a process of its own: libraries, platforms, the cache of programs.
 //!
 //! Oclgrind runs these with `--test-threads 1` only: it mixes up contexts of several threads.
 #![allow(clippy::unwrap_used, missing_docs)]
@@ -9,7 +9,7 @@ use std::process::{Command, Output};
 
 use rarefy::Error;
 use rarefy::internal::device::opencl::{OpenOptions, ProgramSource, build_log, discover, open_with};
-use rarefy_host_tests::doors::{SOURCE, count, counted, door, door_with, options};
+use rarefy_host_tests::contexts::{SOURCE, context, context_with, count, counted, options};
 use rarefy_host_tests::frames::no_opencl;
 
 /// Set in the processes that tests start. Without it the ignored tests below, run among the long ones, do nothing.
@@ -74,7 +74,7 @@ fn child_with_wrong_library() {
     println!("refused: {:?}", search.reasons());
     assert!(search.accepted.is_some());
     if !found.devices.is_empty() {
-        assert!(counted(&count(&door(), 9, 9, None)));
+        assert!(counted(&count(&context(), 9, 9, None)));
     }
 }
 
@@ -93,10 +93,10 @@ fn child_build() {
     if !is_child() {
         return;
     }
-    let door = door_with(&OpenOptions::default());
-    let source = build_log::assemble(&[("door-test.cl", SOURCE)]);
-    let program = door.program(&ProgramSource { name: "door-test", source: &source, options: "" }).unwrap();
-    assert!(counted(&count(&door, 123, 45, Some([8, 8]))));
+    let context = context_with(&OpenOptions::default());
+    let source = build_log::assemble(&[("context-test.cl", SOURCE)]);
+    let program = context.program(&ProgramSource { name: "context-test", source: &source, options: "" }).unwrap();
+    assert!(counted(&count(&context, 123, 45, Some([8, 8]))));
     println!("from cache: {}", program.is_from_cache());
 }
 

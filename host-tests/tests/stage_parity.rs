@@ -213,7 +213,7 @@ fn forced_slices_and_two_runs_give_the_same_picture() {
             let open = OpenOptions { slice_items: Some(items), ..OpenOptions::default() };
             let mut sliced = device(false, &open);
             assert!(prepared.draw(&mut sliced, &options, false).unwrap() == first, "slices of {items}: {options:?}");
-            assert!(2 * sliced.door().enqueues() > again.door().enqueues(), "nothing was cut");
+            assert!(2 * sliced.context().enqueues() > again.context().enqueues(), "nothing was cut");
         }
         let on_twin = prepared.draw(&mut twin(), &options, false).unwrap();
         assert!(prepared.draw(&mut twin(), &options, false).unwrap() == on_twin, "twin: {options:?}");

@@ -88,7 +88,7 @@ impl Layer {
         }
     }
 
-    /// Is this a picture of the method's decisions, which full tracing does not take?
+    /// Whether this is a picture of the method's decisions, which full tracing does not take.
     pub fn is_adaptive_only(self) -> bool {
         matches!(self, Layer::Class | Layer::FailMask | Layer::FailedTest(_))
     }

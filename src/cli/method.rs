@@ -73,13 +73,13 @@ pub struct MethodArgs {
     /// Compare reflected colours as displayed, or linearly.
     #[arg(long, value_parser = named::<GcolSpace>, value_name = "display|linear")]
     pub gcol_space: Option<GcolSpace>,
-    /// May a pixel whose upper and lower references differ lie between two others?
+    /// Whether a pixel whose upper and lower references differ may lie between two others.
     #[arg(long, value_name = "true|false")]
     pub second_pairs: Option<bool>,
     /// Where between its references an interpolated pixel lies: midway on the screen, or in space as in the paper.
     #[arg(long, value_parser = named::<Interpolation>, value_name = "perspective|plain")]
     pub interpolation: Option<Interpolation>,
-    /// Do packed pixels take over the shadow bits about which their references agree?
+    /// Whether packed pixels take over the shadow bits about which their references agree.
     #[arg(long, value_name = "true|false")]
     pub reuse_shadows: Option<bool>,
     /// What post-correction compares.

@@ -100,7 +100,7 @@ impl Renderer {
     /// Draws a frame. An adaptive frame that its own counters show to be dearer than full tracing makes the following
     /// ones full (see [`Fallback`]); the statistics say so.
     ///
-    /// The renderer's monitor hears how far it is, and can cancel it. After any error the renderer is usable, and what
+    /// The renderer's monitor is told how far it is, and can cancel it. After any error the renderer is usable, and what
     /// the frame drawn last kept ([`Renderer::plane`]) is what it was, unless the device was lost: a frame takes the
     /// last one's place when it is finished, not before. (A frame's picture is the caller's.)
     ///

@@ -94,7 +94,7 @@ pub fn check(device: &mut OpenClExecutor, shading: Shading, profile: Option<&Pro
     let profile = profile.map_or(String::new(), |profile| profile.to_json().to_string());
     let texts = device.program_texts(shading);
     let about = [texts.as_str(), &profile];
-    let kept = device.door().verdict(&about);
+    let kept = device.context().verdict(&about);
     if let Some(verdict) = kept.as_deref().and_then(|text| read_verdict(&device.info().describe(), text)) {
         return verdict.map(|()| Known::FromCache);
     }
@@ -116,7 +116,7 @@ pub fn check(device: &mut OpenClExecutor, shading: Shading, profile: Option<&Pro
     };
     let failed = test.checks.iter().find(|check| !check.passed);
     let verdict = failed.map_or(PASSED.into(), |check| format!("{FAILED}\n{}\n{}", check.name, check.detail));
-    device.door().keep_verdict(&about, &verdict);
+    device.context().keep_verdict(&about, &verdict);
     test.require().map(|()| Known::Tested)
 }
 
@@ -145,7 +145,7 @@ fn test(device: &mut OpenClExecutor, shading: Shading) -> Result<SelfTest> {
     draw_test_frame(&mut twin, &scene, &options, false, &mut [&mut parity])?;
     checks.extend(parity.results.iter().map(check_parity));
     drop(parity);
-    device.door().start_afresh()?;
+    device.context().start_afresh()?;
     Ok(SelfTest { device: device.info().describe(), checks })
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Device memory: typed buffers that count towards the door's memory.
+//! Device memory: typed buffers that count towards the context's memory.
 
 use std::ffi::c_void;
 use std::marker::PhantomData;
@@ -12,7 +12,7 @@ use opencl3::memory::{CL_MEM_READ_WRITE, create_buffer};
 use opencl3::types::CL_BLOCKING;
 
 use super::codes;
-use super::door::{Door, Shared};
+use super::context::{Context, Shared};
 use super::handle::Handle;
 use crate::{Error, Result, memory};
 
@@ -70,9 +70,9 @@ pub trait AnyBuffer: sealed::Sealed {
     fn raw(&self) -> *mut c_void;
     /// The size of the device memory, in bytes.
     fn bytes(&self) -> u64;
-    /// Whether the buffer was made by this door.
+    /// Whether the buffer was made by this context.
     #[doc(hidden)]
-    fn belongs_to(&self, door: &Door) -> bool;
+    fn belongs_to(&self, context: &Context) -> bool;
 }
 
 impl<T> AnyBuffer for Buffer<T> {
@@ -84,12 +84,12 @@ impl<T> AnyBuffer for Buffer<T> {
         self.bytes
     }
 
-    fn belongs_to(&self, door: &Door) -> bool {
-        Arc::ptr_eq(&self.shared, &door.shared)
+    fn belongs_to(&self, context: &Context) -> bool {
+        Arc::ptr_eq(&self.shared, &context.shared)
     }
 }
 
-impl Door {
+impl Context {
     /// Allocates a buffer of `len` values; what it holds is undefined. A length of 0 allocates room for one.
     ///
     /// Fails with [`Error::LimitExceeded`] if the device (or the profile, or the memory budget) does not allow it.
@@ -254,7 +254,7 @@ impl Door {
         self.done("clEnqueueCopyBuffer", to, event)
     }
 
-    /// The offset in bytes of `start`, if `count` values from there lie within the buffer and it is this door's.
+    /// The offset in bytes of `start`, if `count` values from there lie within the buffer and it is this context's.
     fn place<T>(&self, call: &str, buffer: &Buffer<T>, start: usize, count: usize) -> Result<usize> {
         if !buffer.belongs_to(self) {
             return Err(codes::error(format!("{call} for `{}`", buffer.label), codes::INVALID_CONTEXT));

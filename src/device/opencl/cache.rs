@@ -8,7 +8,7 @@
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-use super::door::Door;
+use super::context::Context;
 use crate::{Error, Result, files};
 
 /// The variable that names the cache folder.
@@ -143,7 +143,7 @@ impl Cache {
     }
 }
 
-impl Door {
+impl Context {
     fn verdict_key(&self, about: &[&str]) -> Key {
         let info = self.info();
         let who = [&info.platform, &info.name, &info.version, &info.driver, env!("CARGO_PKG_VERSION")];

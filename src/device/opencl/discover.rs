@@ -72,7 +72,7 @@ impl DeviceFound {
         profile.unwrap_or(&self.profile).choices()
     }
 
-    /// What the door would enforce on this device, under `profile` if given.
+    /// What the context would enforce on this device, under `profile` if given.
     pub fn limits(&self, profile: Option<&Profile>) -> Limits {
         Limits::new(&self.profile, profile)
     }

@@ -11,7 +11,7 @@ use crate::device::kernels::{self, Mutation};
 use crate::device::launch::{Launch, SceneHandle};
 use crate::device::launch_check::check_launch;
 use crate::device::opencl::{
-    AnyBuffer, Arg, Buffer, DeviceLaunch, Door, Kernel as DeviceKernel, Limits, ProgramSource,
+    AnyBuffer, Arg, Buffer, Context, DeviceLaunch, Kernel as DeviceKernel, Limits, ProgramSource,
 };
 use crate::device::profiles::Choices;
 use crate::device::stage::{Binding, Items, Kernel, LAUNCHES, Program, Stage};
@@ -28,7 +28,7 @@ const LIST_GROUP: usize = 64;
 
 /// Runs kernels on an OpenCL device.
 pub struct OpenClExecutor {
-    door: Door,
+    context: Context,
     is_lost: bool,
     kernels: HashMap<(Kernel, BuildFlavour), DeviceKernel>,
     strict: bool,
@@ -36,7 +36,7 @@ pub struct OpenClExecutor {
     mutation: Option<Mutation>,
     scan_group: u32,
     program_ms: f64,
-    /// On doors before this one.
+    /// On contexts before this one.
     peak_before: u64,
     monitor: Monitor,
 }
@@ -55,17 +55,17 @@ struct SceneOnDevice {
 }
 
 impl SceneOnDevice {
-    fn upload(door: &Door, scene: &PreparedScene) -> Result<Self> {
+    fn upload(context: &Context, scene: &PreparedScene) -> Result<Self> {
         Ok(SceneOnDevice {
-            nodes: door.buffer_from("nodes", &scene.tree.nodes)?,
-            leaf_triangles: door.buffer_from("leaf_triangles", &scene.tree.leaf_triangles)?,
-            triangles: door.buffer_from("triangles", &scene.triangles)?,
-            triangle_shading: door.buffer_from("triangle_shading", &scene.triangle_shading)?,
-            materials: door.buffer_from("materials", &scene.materials)?,
-            object_materials: door.buffer_from("object_materials", &scene.object_materials)?,
-            textures: door.buffer_from("textures", &scene.textures)?,
-            texels: door.buffer_from("texels", &scene.texels)?,
-            tables: door.buffer_from("tables", &scene.tables)?,
+            nodes: context.buffer_from("nodes", &scene.tree.nodes)?,
+            leaf_triangles: context.buffer_from("leaf_triangles", &scene.tree.leaf_triangles)?,
+            triangles: context.buffer_from("triangles", &scene.triangles)?,
+            triangle_shading: context.buffer_from("triangle_shading", &scene.triangle_shading)?,
+            materials: context.buffer_from("materials", &scene.materials)?,
+            object_materials: context.buffer_from("object_materials", &scene.object_materials)?,
+            textures: context.buffer_from("textures", &scene.textures)?,
+            texels: context.buffer_from("texels", &scene.texels)?,
+            tables: context.buffer_from("tables", &scene.tables)?,
         })
     }
 }
@@ -83,22 +83,22 @@ struct FrameOnDevice {
 }
 
 impl FrameOnDevice {
-    fn allocate(door: &Door, sizes: &FrameSizes) -> Result<Self> {
+    fn allocate(context: &Context, sizes: &FrameSizes) -> Result<Self> {
         Ok(FrameOnDevice {
-            params: door.buffer("frame", 1)?,
-            lights: door.buffer("lights", MAX_LIGHTS)?,
-            attributes: door.buffer("attributes", sizes.attributes)?,
-            counters: door.buffer("counters", sizes.counters)?,
-            color: door.buffer("color", sizes.color)?,
-            list: door.buffer("list", sizes.list)?,
-            masks: door.buffer("masks", sizes.masks)?,
-            sums: door.buffer("sums", sizes.sums)?,
+            params: context.buffer("frame", 1)?,
+            lights: context.buffer("lights", MAX_LIGHTS)?,
+            attributes: context.buffer("attributes", sizes.attributes)?,
+            counters: context.buffer("counters", sizes.counters)?,
+            color: context.buffer("color", sizes.color)?,
+            list: context.buffer("list", sizes.list)?,
+            masks: context.buffer("masks", sizes.masks)?,
+            sums: context.buffer("sums", sizes.sums)?,
         })
     }
 
-    fn write_inputs(&self, door: &Door, inputs: &FrameInputs) -> Result<()> {
-        door.write(&self.params, 0, std::slice::from_ref(&inputs.params))?;
-        if inputs.lights.is_empty() { Ok(()) } else { door.write(&self.lights, 0, &inputs.lights) }
+    fn write_inputs(&self, context: &Context, inputs: &FrameInputs) -> Result<()> {
+        context.write(&self.params, 0, std::slice::from_ref(&inputs.params))?;
+        if inputs.lights.is_empty() { Ok(()) } else { context.write(&self.lights, 0, &inputs.lights) }
     }
 
     fn get(&self, buffer: FrameBuffer) -> &Buffer<u32> {
@@ -114,12 +114,12 @@ impl FrameOnDevice {
 }
 
 impl OpenClExecutor {
-    /// An executor on the device behind `door`. `strict` kernels equal the CPU twin bit for bit; `mutation` breaks
+    /// An executor on the device behind `context`. `strict` kernels equal the CPU twin bit for bit; `mutation` breaks
     /// kernels on purpose, for tests and for the self-test's negative control.
-    pub fn new(door: Door, strict: bool, mutation: Option<Mutation>) -> Self {
-        let (scan_group, traversal) = (scan_group(door.limits()), door.choices().traversal());
+    pub fn new(context: Context, strict: bool, mutation: Option<Mutation>) -> Self {
+        let (scan_group, traversal) = (scan_group(context.limits()), context.choices().traversal());
         let mut executor = OpenClExecutor {
-            door,
+            context,
             is_lost: false,
             kernels: HashMap::new(),
             strict,
@@ -141,7 +141,7 @@ impl OpenClExecutor {
         if self.build(scan.0, scan.1).is_ok()
             && let Some(kernel) = self.kernels.get(&scan)
         {
-            let [fitted, _] = self.door.fit_work_group(kernel, [self.scan_group as usize, 1], true);
+            let [fitted, _] = self.context.fit_work_group(kernel, [self.scan_group as usize, 1], true);
             self.scan_group = fitted.max(2) as u32;
         }
     }
@@ -166,13 +166,13 @@ impl OpenClExecutor {
     /// A program that does not build, or a failing call.
     pub fn probe(&mut self) -> Result<Vec<u32>> {
         let len = layout::struct_layout().len();
-        let out: Buffer<u32> = self.door.buffer("probe", len)?;
+        let out: Buffer<u32> = self.context.buffer("probe", len)?;
         let source = kernels::assemble("probe.cl", self.mutation.as_ref());
         let options = layout::build_options(self.flavour(Shading::Full, false));
-        let program = self.door.program(&ProgramSource { name: "probe", source: &source, options: &options })?;
+        let program = self.context.program(&ProgramSource { name: "probe", source: &source, options: &options })?;
         let kernel = program.kernel("probe")?;
         let args = [Arg::Buffer(&out)];
-        self.door.launch(&DeviceLaunch {
+        self.context.launch(&DeviceLaunch {
             label: "probe",
             kernel: &kernel,
             args: &args,
@@ -180,12 +180,12 @@ impl OpenClExecutor {
             local: Some([1, 1]),
             barrier: false,
         })?;
-        self.door.read(&out, 0..len)
+        self.context.read(&out, 0..len)
     }
 
     /// The device.
-    pub fn door(&self) -> &Door {
-        &self.door
+    pub fn context(&self) -> &Context {
+        &self.context
     }
 
     fn build(&mut self, kernel: Kernel, flavour: BuildFlavour) -> Result<()> {
@@ -196,11 +196,12 @@ impl OpenClExecutor {
         let started = std::time::Instant::now();
         let program = kernel.program();
         let mut options = layout::build_options(flavour);
-        if flavour.strict && self.door.limits().correctly_rounded_divide_sqrt {
+        if flavour.strict && self.context.limits().correctly_rounded_divide_sqrt {
             options.push_str(" -cl-fp32-correctly-rounded-divide-sqrt");
         }
         let source = kernels::program_source(program, self.mutation.as_ref());
-        let built = self.door.program(&ProgramSource { name: program.name(), source: &source, options: &options })?;
+        let built =
+            self.context.program(&ProgramSource { name: program.name(), source: &source, options: &options })?;
         for entry in program.kernels() {
             self.kernels.insert((entry, flavour), built.kernel(entry.name())?);
         }
@@ -268,12 +269,12 @@ fn arguments<'a>(launch: &'a Launch, scene: &'a SceneOnDevice, frame: &'a FrameO
 
 impl Executor for OpenClExecutor {
     fn info(&self) -> ExecutorInfo {
-        let info = self.door.info();
+        let info = self.context.info();
         ExecutorInfo {
             name: info.name.clone(),
             version: format!("{}, driver {}", info.version, info.driver),
             backend: "opencl",
-            profile: self.door.profile_name().unwrap_or("none").into(),
+            profile: self.context.profile_name().unwrap_or("none").into(),
         }
     }
 
@@ -286,27 +287,27 @@ impl Executor for OpenClExecutor {
     }
 
     fn memory_limits(&self) -> MemoryLimits {
-        let limits = self.door.limits();
+        let limits = self.context.limits();
         MemoryLimits { total_bytes: limits.global_mem_bytes, allocation_bytes: limits.max_mem_alloc_bytes }
     }
 
     fn prefers_few_launches(&self) -> bool {
         // Each of a CPU's kernels is compiled before it first runs, and a launch costs microseconds.
-        !self.door.is_cpu()
+        !self.context.is_cpu()
     }
 
     fn upload(&mut self, scene: &Arc<PreparedScene>) -> Result<SceneHandle> {
-        Ok(SceneHandle::new(scene, SceneOnDevice::upload(&self.door, scene)?))
+        Ok(SceneHandle::new(scene, SceneOnDevice::upload(&self.context, scene)?))
     }
 
     fn allocate(&mut self, inputs: &FrameInputs, sizes: &FrameSizes) -> Result<FrameHandle> {
-        let memory = FrameOnDevice::allocate(&self.door, sizes)?;
-        memory.write_inputs(&self.door, inputs)?;
+        let memory = FrameOnDevice::allocate(&self.context, sizes)?;
+        memory.write_inputs(&self.context, inputs)?;
         Ok(FrameHandle::new(inputs.clone(), *sizes, memory))
     }
 
     fn begin(&mut self, frame: &mut FrameHandle, inputs: &FrameInputs) -> Result<()> {
-        frame.memory::<FrameOnDevice>()?.write_inputs(&self.door, inputs)?;
+        frame.memory::<FrameOnDevice>()?.write_inputs(&self.context, inputs)?;
         frame.set_inputs(inputs);
         Ok(())
     }
@@ -326,8 +327,8 @@ impl Executor for OpenClExecutor {
             Items::Chunks => [step.item_count.div_ceil(32) as usize, 1],
             Items::OneGroup => [1, 1],
         };
-        let fit = |wanted| self.door.fit_work_group(device_kernel, wanted, barrier);
-        let local = match work_group(self.door.choices(), stage, kernel) {
+        let fit = |wanted| self.context.fit_work_group(device_kernel, wanted, barrier);
+        let local = match work_group(self.context.choices(), stage, kernel) {
             // Its scratch memory is that of a scan.
             Some([width, _]) if items == Items::OneGroup => fit([width.min(step.scan_group as usize), 1]),
             Some(wanted) => fit(wanted),
@@ -338,7 +339,7 @@ impl Executor for OpenClExecutor {
         if global.contains(&0) {
             return Ok(());
         }
-        self.door.launch(&DeviceLaunch {
+        self.context.launch(&DeviceLaunch {
             label: kernel.label(stage),
             kernel: device_kernel,
             args: &arguments(launch, scene, frame),
@@ -350,22 +351,22 @@ impl Executor for OpenClExecutor {
 
     fn read(&mut self, frame: &FrameHandle, buffer: FrameBuffer, range: Range<usize>) -> Result<Vec<u32>> {
         frame.sizes().check_range(buffer, &range)?;
-        self.door.read(frame.memory::<FrameOnDevice>()?.get(buffer), range)
+        self.context.read(frame.memory::<FrameOnDevice>()?.get(buffer), range)
     }
 
     fn write(&mut self, frame: &FrameHandle, buffer: FrameBuffer, words: &[u32]) -> Result<()> {
         frame.sizes().check_range(buffer, &(0..words.len()))?;
-        self.door.write(frame.memory::<FrameOnDevice>()?.get(buffer), 0, words)
+        self.context.write(frame.memory::<FrameOnDevice>()?.get(buffer), 0, words)
     }
 
     fn take_timings(&mut self) -> Result<Vec<(Stage, f64)>> {
-        let timings = self.door.take_timings()?;
+        let timings = self.context.take_timings()?;
         let stage = |label: &str| LAUNCHES.iter().find(|(.., of)| *of == label).map(|(stage, ..)| *stage);
         Ok(timings.into_iter().filter_map(|(label, ms)| Some((stage(label)?, ms))).collect())
     }
 
     fn watch(&mut self, monitor: &Monitor) {
-        self.door.watch(monitor);
+        self.context.watch(monitor);
         self.monitor = monitor.clone();
     }
 
@@ -374,7 +375,7 @@ impl Executor for OpenClExecutor {
     }
 
     fn peak_bytes(&self) -> u64 {
-        self.door.memory().peak_bytes.max(self.peak_before)
+        self.context.memory().peak_bytes.max(self.peak_before)
     }
 
     fn program_ms(&self) -> f64 {
@@ -389,10 +390,10 @@ impl Executor for OpenClExecutor {
         self.is_lost = true;
         self.kernels.clear();
         self.peak_before = self.peak_bytes();
-        self.door = self.door.reopen()?;
-        self.door.watch(&self.monitor);
+        self.context = self.context.reopen()?;
+        self.context.watch(&self.monitor);
         self.is_lost = false;
-        let slices = self.door.slice_ms().map_or("whole".into(), |ms| format!("of {ms:.1} ms"));
+        let slices = self.context.slice_ms().map_or("whole".into(), |ms| format!("of {ms:.1} ms"));
         Ok(format!("launches are {slices} now"))
     }
 }

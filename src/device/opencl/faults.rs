@@ -4,7 +4,7 @@
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex};
 
-use super::door::lock;
+use super::context::lock;
 
 /// When a device is to be lost: an enqueue fails with a status, as on a phone whose watchdog struck, and then nothing
 /// made on that context works any more. Clones share their plan; a device that is opened again goes on with it.

@@ -13,7 +13,7 @@ pub(crate) struct Handle {
     call: &'static str,
 }
 
-// SAFETY: OpenCL 1.2 (appendix A.2) makes all calls thread-safe except `clSetKernelArg`, and the door sets kernel
+// SAFETY: OpenCL 1.2 (appendix A.2) makes all calls thread-safe except `clSetKernelArg`, and the context sets kernel
 // arguments only under its lock.
 unsafe impl Send for Handle {}
 // SAFETY: as above.

@@ -8,7 +8,7 @@ use opencl3::kernel::set_kernel_arg;
 
 use super::buffer::AnyBuffer;
 use super::codes::{self, check};
-use super::door::{Door, State, lock};
+use super::context::{Context, State, lock};
 use super::handle::Handle;
 use super::program::Kernel;
 use super::slices::Slicer;
@@ -49,7 +49,7 @@ pub struct DeviceLaunch<'a> {
     pub barrier: bool,
 }
 
-impl Door {
+impl Context {
     /// The largest work-group for `kernel` within all limits that one gets from `wanted` by halving sides.
     pub fn fit_work_group(&self, kernel: &Kernel, wanted: [usize; 2], barrier: bool) -> [usize; 2] {
         self.limits().fit_work_group(wanted, kernel.work_group_size(), barrier)
@@ -205,7 +205,7 @@ fn set_args(launch: &DeviceLaunch) -> Result<()> {
         };
         let number = u32::try_from(index).unwrap_or(u32::MAX);
         // SAFETY: the pointer is to `size` readable bytes (or null for local memory) that the call copies; the caller
-        // holds the door's lock, so that no other thread sets arguments of this kernel.
+        // holds the context's lock, so that no other thread sets arguments of this kernel.
         let set = unsafe { set_kernel_arg(launch.kernel.raw(), number, size, pointer) };
         set.map_err(|code| codes::error(format!("clSetKernelArg {index} of `{}`", launch.label), code))?;
     }

@@ -14,7 +14,7 @@ const SMALLER: Remedies = &[Remedy::SmallerPicture, Remedy::SmallerScene];
 const SMALLER_WORK_GROUP: Remedies = &[Remedy::SmallerWorkGroup];
 const BUFFERS: Remedies = &[Remedy::BufferMemory];
 
-/// The limits that the door enforces. A number without a known limit is the largest of its type.
+/// The limits that the context enforces. A number without a known limit is the largest of its type.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Limits {
     /// `CL_DEVICE_GLOBAL_MEM_SIZE`: all buffers together, in bytes.

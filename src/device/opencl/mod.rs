@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! The one door to OpenCL: nothing else in this crate calls it.
+//! The wrapper around OpenCL: nothing else in this crate calls it.
 //!
-//! [`open`] finds the library, picks a device and returns a [`Door`]. Through the door one makes [`Buffer`]s,
+//! [`open`] finds the library, picks a device and returns a [`Context`], which makes [`Buffer`]s,
 //! [`Program`]s and launches. It knows the device's limits (or those of a [`Profile`], which a desktop obeys like the
 //! phone would), accounts for memory, splits long launches into slices, and measures them.
 
@@ -9,8 +9,8 @@ mod buffer;
 pub mod build_log;
 mod cache;
 pub mod codes;
+mod context;
 mod discover;
-mod door;
 pub mod executor;
 mod faults;
 mod handle;
@@ -23,8 +23,8 @@ mod timing;
 
 pub use buffer::{AnyBuffer, Buffer};
 pub use cache::CacheFolder;
+pub use context::{Context, MemoryUse, OpenOptions, open, open_with};
 pub use discover::{DeviceFound, DeviceInfo, DeviceKind, Discovery, discover};
-pub use door::{Door, MemoryUse, OpenOptions, open, open_with};
 pub use faults::Faults;
 pub use launch::{Arg, DeviceLaunch};
 pub use limits::Limits;

@@ -16,8 +16,8 @@ use opencl3::program::{
 
 use super::cache::Key;
 use super::codes::{self, check};
+use super::context::{Context, Shared};
 use super::discover::text;
-use super::door::{Door, Shared};
 use super::handle::Handle;
 use super::{build_log, codes::BUILD_PROGRAM_FAILURE};
 use crate::{Error, Result};
@@ -57,7 +57,7 @@ pub struct Kernel {
     preferred_multiple: u64,
 }
 
-impl Door {
+impl Context {
     /// Builds a program, or takes it from the cache if the same source was built with the same options for this device
     /// and driver before.
     ///
@@ -249,8 +249,8 @@ impl Kernel {
         self.kernel.raw()
     }
 
-    pub(super) fn belongs_to(&self, door: &Door) -> bool {
-        Arc::ptr_eq(&self.shared, &door.shared)
+    pub(super) fn belongs_to(&self, context: &Context) -> bool {
+        Arc::ptr_eq(&self.shared, &context.shared)
     }
 }
 

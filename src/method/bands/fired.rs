@@ -39,7 +39,7 @@ impl FiredPixels {
         is_new
     }
 
-    /// Is the pixel there?
+    /// Whether the pixel is in the set.
     pub fn contains(&self, pixel: u32) -> bool {
         let (word, bit) = self.place(pixel);
         self.words[word] & bit != 0

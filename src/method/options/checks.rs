@@ -58,7 +58,7 @@ impl TestSet {
         TestSet(self.0 & !test.fail_bit())
     }
 
-    /// Is `test` in the set?
+    /// Whether `test` is in the set.
     pub const fn has(self, test: Test) -> bool {
         self.0 & test.fail_bit() != 0
     }

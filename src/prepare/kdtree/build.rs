@@ -102,7 +102,7 @@ impl BuildOptions {
 impl KdTree {
     /// Builds the tree over `triangles`, whose corners are indices into `positions`.
     ///
-    /// `monitor` hears which share is done, and can end it.
+    /// `monitor` is told which share is done, and can end it.
     ///
     /// # Errors
     ///

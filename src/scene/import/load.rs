@@ -25,7 +25,7 @@ use crate::{Error, Result};
 /// Loads the scene at `path`: a folder with `scene.obj` (and `view.json`), or an OBJ file (`view.json` beside it is
 /// used). Without a view the camera and a light are fitted to the scene, and a warning says so.
 ///
-/// `monitor` hears what is being done, and can end it.
+/// `monitor` is told what is being done, and can end it.
 ///
 /// # Errors
 /// Files that cannot be read or make no sense; each message names the file and, where there is one, line or key.

@@ -43,7 +43,7 @@ pub struct OpenOptions {
     pub faults: Faults,
 }
 
-/// The memory that a door's buffers use, in bytes.
+/// The memory that a context's buffers use, in bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct MemoryUse {
     /// Now.
@@ -103,9 +103,9 @@ pub(super) struct State {
 
 /// An opened OpenCL device: the only way to memory, programs and launches.
 ///
-/// All commands go through one in-order queue, so that each sees what those before it wrote. A door may be used from
+/// All commands go through one in-order queue, so that each sees what those before it wrote. A context may be used from
 /// several threads; launches take turns.
-pub struct Door {
+pub struct Context {
     pub(super) shared: Arc<Shared>,
     pub(super) cache: Cache,
     pub(super) verdicts: Cache,
@@ -127,17 +127,17 @@ pub(super) fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 /// Opens a device: number `index` of those discovered, else the best, under a profile's limits if one is given.
 ///
 /// Without a usable device the error is [`Error::NoOpenCl`] and lists everything that was tried.
-pub fn open(index: Option<usize>, profile: Option<&Profile>) -> Result<Door> {
+pub fn open(index: Option<usize>, profile: Option<&Profile>) -> Result<Context> {
     open_with(&OpenOptions { index, profile: profile.cloned(), ..OpenOptions::default() })
 }
 
 /// As [`open`], with all options.
-pub fn open_with(options: &OpenOptions) -> Result<Door> {
+pub fn open_with(options: &OpenOptions) -> Result<Context> {
     open_again(options, 0)
 }
 
 /// Opens a device for the `reopened`th time again; slices are halved each time.
-fn open_again(options: &OpenOptions, reopened: u32) -> Result<Door> {
+fn open_again(options: &OpenOptions, reopened: u32) -> Result<Context> {
     let mut found = discover_with(options.library.as_deref());
     let count = found.devices.len();
     if count == 0 {
@@ -177,7 +177,7 @@ fn open_again(options: &OpenOptions, reopened: u32) -> Result<Door> {
     let pocl_caches = std::env::var_os("POCL_KERNEL_CACHE").is_none_or(|value| value != "0");
     let driver_caches = device.info.platform.contains("Portable Computing Language") && pocl_caches;
     let choices = options.profile.as_ref().unwrap_or(&device.profile).choices().clone();
-    Ok(Door {
+    Ok(Context {
         shared: Arc::new(Shared {
             queue,
             context,
@@ -208,7 +208,7 @@ impl State {
     }
 }
 
-impl Door {
+impl Context {
     /// Who the device is.
     pub fn info(&self) -> &DeviceInfo {
         &self.shared.info
@@ -234,7 +234,7 @@ impl Door {
         self.shared.info.kind == DeviceKind::Cpu
     }
 
-    /// The memory that the door's buffers use.
+    /// The memory that the context's buffers use.
     pub fn memory(&self) -> MemoryUse {
         *lock(&self.shared.memory)
     }
@@ -251,8 +251,8 @@ impl Door {
     }
 
     /// Opens the same device once more, after it was lost: a new context, slices of half the time. Everything made on
-    /// this door stays useless.
-    pub(crate) fn reopen(&self) -> Result<Door> {
+    /// this context stays useless.
+    pub(crate) fn reopen(&self) -> Result<Context> {
         open_again(&self.options, self.reopened + 1)
     }
 
@@ -261,7 +261,7 @@ impl Door {
         lock(&self.state).planner.target_ms()
     }
 
-    /// From here on `monitor` watches launches and transfers: it hears how far a launch is, and ends it between two
+    /// From here on `monitor` watches launches and transfers: it is told how far a launch is, and ends it between two
     /// slices. What is in flight then is waited for.
     pub fn watch(&self, monitor: &Monitor) {
         lock(&self.state).monitor = monitor.clone();
@@ -317,14 +317,14 @@ impl Door {
         Ok(())
     }
 
-    /// The number of enqueued launches (slices) since the door was opened.
+    /// The number of enqueued launches (slices) since the context was opened.
     pub fn enqueues(&self) -> u64 {
         lock(&self.state).enqueues
     }
 }
 
-impl std::fmt::Debug for Door {
+impl std::fmt::Debug for Context {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "Door to {}", self.shared.info.describe())
+        write!(f, "OpenCL context on {}", self.shared.info.describe())
     }
 }

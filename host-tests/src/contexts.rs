@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Doors to OpenCL and small kernels to send through them.
+//! OpenCL contexts, and small kernels to launch in them.
 
 use rarefy::internal::device::opencl::{
-    Arg, CacheFolder, DeviceLaunch, Door, Kernel, OpenOptions, Profile, ProgramSource, build_log, open_with,
+    Arg, CacheFolder, Context, DeviceLaunch, Kernel, OpenOptions, Profile, ProgramSource, build_log, open_with,
 };
 
 use crate::frames::WITHOUT_OPENCL;
@@ -12,17 +12,17 @@ pub fn options() -> OpenOptions {
     OpenOptions { cache: CacheFolder::Off, ..OpenOptions::default() }
 }
 
-/// Opens a door.
+/// Opens a context.
 ///
 /// # Panics
 /// If there is no OpenCL.
-pub fn door_with(options: &OpenOptions) -> Door {
+pub fn context_with(options: &OpenOptions) -> Context {
     open_with(options).unwrap_or_else(|error| panic!("{error} (or set {WITHOUT_OPENCL}=none)"))
 }
 
-/// A door without a cache.
-pub fn door() -> Door {
-    door_with(&options())
+/// A context without a cache.
+pub fn context() -> Context {
+    context_with(&options())
 }
 
 /// A profile called `tight` of these limits alone: key of the query, value as JSON.
@@ -34,9 +34,9 @@ pub fn profile(limits: &[(&str, &str)]) -> Profile {
     Profile::from_json("tight", &format!(r#"{{"limits":{{{}}}}}"#, limits.join(","))).unwrap()
 }
 
-/// A door under [`profile`].
-pub fn door_under(limits: &[(&str, &str)]) -> Door {
-    door_with(&OpenOptions { profile: Some(profile(limits)), ..options() })
+/// A context under [`profile`].
+pub fn context_under(limits: &[(&str, &str)]) -> Context {
+    context_with(&OpenOptions { profile: Some(profile(limits)), ..options() })
 }
 
 /// A program of four small kernels.
@@ -70,28 +70,33 @@ kernel void pick(constant uint *a, constant uint *b, global uint *out) {
 ";
 
 /// A kernel of [`SOURCE`].
-pub fn kernel(door: &Door, name: &str) -> Kernel {
-    let source = build_log::assemble(&[("door-test.cl", SOURCE)]);
-    door.program(&ProgramSource { name: "door-test", source: &source, options: "" }).unwrap().kernel(name).unwrap()
+pub fn kernel(context: &Context, name: &str) -> Kernel {
+    let source = build_log::assemble(&[("context-test.cl", SOURCE)]);
+    context
+        .program(&ProgramSource { name: "context-test", source: &source, options: "" })
+        .unwrap()
+        .kernel(name)
+        .unwrap()
 }
 
 /// Runs `count` on a picture and returns it: index + 1 everywhere if each work-item ran once.
-pub fn count(door: &Door, width: usize, height: usize, local: Option<[usize; 2]>) -> Vec<u32> {
-    let kernel = kernel(door, "count");
-    let out = door.buffer::<u32>("out", width * height).unwrap();
-    door.fill_zero(&out).unwrap();
+pub fn count(context: &Context, width: usize, height: usize, local: Option<[usize; 2]>) -> Vec<u32> {
+    let kernel = kernel(context, "count");
+    let out = context.buffer::<u32>("out", width * height).unwrap();
+    context.fill_zero(&out).unwrap();
     let (w, h) = (width as u32, height as u32);
     let args = [Arg::Buffer(&out), Arg::Value(&w.to_ne_bytes()), Arg::Value(&h.to_ne_bytes())];
-    door.launch(&DeviceLaunch {
-        label: "count",
-        kernel: &kernel,
-        args: &args,
-        global: [width, height],
-        local,
-        barrier: false,
-    })
-    .unwrap();
-    door.read(&out, 0..width * height).unwrap()
+    context
+        .launch(&DeviceLaunch {
+            label: "count",
+            kernel: &kernel,
+            args: &args,
+            global: [width, height],
+            local,
+            barrier: false,
+        })
+        .unwrap();
+    context.read(&out, 0..width * height).unwrap()
 }
 
 /// Whether [`count`] found that each work-item ran once.
@@ -103,14 +108,21 @@ pub fn counted(values: &[u32]) -> bool {
 ///
 /// # Errors
 /// A limit, or a failing call.
-pub fn launch_sum(door: &Door, local: usize) -> rarefy::Result<u32> {
-    let kernel = kernel(door, "sum");
+pub fn launch_sum(context: &Context, local: usize) -> rarefy::Result<u32> {
+    let kernel = kernel(context, "sum");
     let values: Vec<u32> = (0..1000).collect();
-    let input = door.buffer_from("in", &values)?;
-    let out = door.buffer_from("out", &[0u32])?;
+    let input = context.buffer_from("in", &values)?;
+    let out = context.buffer_from("out", &[0u32])?;
     let n = 1000u32.to_ne_bytes();
     let args = [Arg::Buffer(&input), Arg::Buffer(&out), Arg::Local(local * 4), Arg::Value(&n)];
     let local = Some([local, 1]);
-    door.launch(&DeviceLaunch { label: "sum", kernel: &kernel, args: &args, global: [1000, 1], local, barrier: true })?;
-    Ok(door.read(&out, 0..1)?[0])
+    context.launch(&DeviceLaunch {
+        label: "sum",
+        kernel: &kernel,
+        args: &args,
+        global: [1000, 1],
+        local,
+        barrier: true,
+    })?;
+    Ok(context.read(&out, 0..1)?[0])
 }
