@@ -19,8 +19,10 @@ __kernel void trace(SCENE_PARAMS, const StepParams step, __global const uint *li
     x = step.origin_x + step.step_x * gx;
     y = step.origin_y + step.step_y * gy;
   } else {
-    if (gx >= step.item_count) return;
-    const uint pixel = list[step.list_offset + gx];
+    // Lists come in one row of work-groups, whose items follow each other.
+    const uint item = (gx / get_local_size(0) * get_local_size(1) + gy) * get_local_size(0) + gx % get_local_size(0);
+    if (item >= step.item_count) return;
+    const uint pixel = list[step.list_offset + item];
     x = pixel & 0xffffu;
     y = pixel >> 16;
     if (step.pixel_class == CLASS_CORRECTED && !needs_correction_ray(frame, &step, out_attributes, x, y)) return;

@@ -123,8 +123,8 @@ type Mutant = (&'static str, &'static str, &'static str, Shot, Launch);
 
 const SCAN_LEVEL: &str = "scan_level(&step, sums, scratch);";
 const SCAN_ONE_SHORT: &str = "StepParams s = step; s.item_count -= 1u; scan_level(&s, sums, scratch);";
-const ENTRY: &str = "list[step.list_offset + gx]";
-const EVEN_ENTRY: &str = "list[step.list_offset + (gx & ~1u)]";
+const ENTRY: &str = "list[step.list_offset + item]";
+const EVEN_ENTRY: &str = "list[step.list_offset + (item & ~1u)]";
 
 /// Each entry point on its own.
 #[rustfmt::skip]
@@ -143,6 +143,7 @@ const ENTRY_POINTS: &[Mutant] = &[
     ("trace.cl", "x, y, step.pixel_class, &step", "x, y, CLASS_CORRECTED, &step", Shot::Zoo, STEP2C),
     ("trace.cl", "step.pixel_class == CLASS_CORRECTED &&", "step.pixel_class != CLASS_CORRECTED &&", Shot::Zoo, STEP3C),
     ("trace.cl", ENTRY, EVEN_ENTRY, Shot::Zoo, STEP3C),
+    ("trace.cl", "get_local_size(1) + gy)", "get_local_size(1))", Shot::Zoo, STEP2C),
     ("trace.cl", "pixel & 0xffffu", "pixel & 0xfffeu", Shot::Zoo, STEP3C),
     ("common/correction.clh", "atomic_min(", "atomic_max(", Shot::Rods, MARK),
     ("correct.cl", "chunk * 32u < step.item_count", "chunk * 64u < step.item_count", Shot::Rods, COUNT),

@@ -34,19 +34,19 @@ const TWIN_CHECKSUM: u64 = 0xbc84_eb26_aab1_c124;
 pub fn breaking_mutation(stage: Stage) -> Mutation {
     const GRID_ROW: &str = "step.step_y * gy";
     const PACKED: &str = "#define PACK_PIXEL(i) grid_item_pixel(&step, i)";
-    const ENTRY: &str = "list[step.list_offset + gx]";
+    const ENTRY: &str = "list[step.list_offset + item]";
     let (file, from, to) = match stage {
         Stage::Step1 => ("trace.cl", GRID_ROW, "step.step_y * (gy & ~1u)"),
         Stage::Step2a => ("check.cl", GRID_ROW, "step.step_y * (step.reference_dx ? gy & ~1u : gy)"),
         Stage::Step2b => {
             ("pack.cl", PACKED, "#define PACK_PIXEL(i) grid_item_pixel(&step, step.reference_dx ? (i) ^ 1u : (i))")
         }
-        Stage::Step2c => ("trace.cl", ENTRY, "list[step.list_offset + (step.reference_dx ? 0u : gx)]"),
+        Stage::Step2c => ("trace.cl", ENTRY, "list[step.list_offset + (step.reference_dx ? 0u : item)]"),
         Stage::Step3a => ("check.cl", GRID_ROW, "step.step_y * (step.reference_dy ? gy & ~1u : gy)"),
         Stage::Step3b => {
             ("pack.cl", PACKED, "#define PACK_PIXEL(i) grid_item_pixel(&step, step.reference_dy ? (i) ^ 1u : (i))")
         }
-        Stage::Step3c => ("trace.cl", ENTRY, "list[step.list_offset + (step.reference_dy ? 0u : gx)]"),
+        Stage::Step3c => ("trace.cl", ENTRY, "list[step.list_offset + (step.reference_dy ? 0u : item)]"),
         Stage::Step4 => ("common/correction.clh", "case 0u: return x > 0u", "case 0u: return x > 1000u"),
     };
     Mutation { file: file.into(), from: from.into(), to: to.into() }

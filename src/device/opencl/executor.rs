@@ -222,6 +222,8 @@ pub fn scan_group(limits: &Limits) -> u32 {
 /// The work-group that `kernel` is launched with by `stage` before it is fitted to the kernel's own limit; `None`: the scan's.
 pub fn work_group(choices: &Choices, stage: Stage, kernel: Kernel) -> Option<[usize; 2]> {
     match kernel.items(stage) {
+        // Lists of rays as well: some drivers compile a kernel anew for every shape.
+        Items::List if kernel == Kernel::Trace => Some(choices.work_group(stage.name())),
         Items::Grid => Some(choices.work_group(stage.name())),
         Items::List | Items::Chunks | Items::OneGroup => Some([LIST_GROUP, 1]),
         Items::Groups => None,
@@ -321,12 +323,6 @@ impl Executor for OpenClExecutor {
         let device_kernel = &self.kernels[&(kernel, flavour)];
         let items = kernel.items(stage);
         let barrier = matches!(items, Items::Groups | Items::OneGroup);
-        let global = match items {
-            Items::Grid => [step.grid_width as usize, step.grid_height as usize],
-            Items::List | Items::Groups => [step.item_count as usize, 1],
-            Items::Chunks => [step.item_count.div_ceil(32) as usize, 1],
-            Items::OneGroup => [1, 1],
-        };
         let fit = |wanted| self.context.fit_work_group(device_kernel, wanted, barrier);
         let local = match work_group(self.context.choices(), stage, kernel) {
             // Its scratch memory is that of a scan.
@@ -335,7 +331,14 @@ impl Executor for OpenClExecutor {
             // The scan's levels depend on the group: it is not fitted but checked.
             None => [step.scan_group as usize, 1],
         };
-        let global = if items == Items::OneGroup { local } else { global };
+        let global = match items {
+            Items::Grid => [step.grid_width as usize, step.grid_height as usize],
+            // A row of work-groups, whatever their shape: trace.cl counts group by group.
+            Items::List => [(step.item_count as usize).div_ceil(local[0] * local[1]) * local[0], local[1]],
+            Items::Groups => [step.item_count as usize, 1],
+            Items::Chunks => [step.item_count.div_ceil(32) as usize, 1],
+            Items::OneGroup => local,
+        };
         if global.contains(&0) {
             return Ok(());
         }

@@ -92,7 +92,7 @@ impl Choices {
             note: String::new(),
         };
         let mut entries = vec![
-            ("work_group", make(serde_json::json!({ "default": if gpu { [8, 8] } else { [64, 1] } }))),
+            ("work_group", make(serde_json::json!({ "default": [8, 8] }))),
             ("memory_path", make("buffers".into())),
             ("traversal", make(if gpu { "short-stack" } else { "private-stack" }.into())),
         ];
