@@ -7,16 +7,18 @@
 use std::path::{Path, PathBuf};
 
 use rarefy::internal::device::executor::Executor;
+use rarefy::internal::device::hooks::recording::Recording;
 use rarefy::internal::device::kernels::Mutation;
 use rarefy::internal::device::open::{DeviceChoice, DeviceOptions};
-use rarefy::internal::device::opencl::CacheFolder;
+use rarefy::internal::device::opencl::{CacheFolder, OpenOptions};
+use rarefy::internal::device::stage::Kernel;
 use rarefy::internal::layout::Traversal;
 use rarefy::internal::method::counts::Keep;
 use rarefy::internal::method::options::{Mode, RenderOptions};
 use rarefy::internal::render::renderer::Renderer;
 use rarefy::internal::scene::builtin;
 use rarefy_host_tests::fixtures::{blocks, sweeps};
-use rarefy_host_tests::frames::{Drawn, Prepared, mutated_device, renderer_of, twin, walking_by};
+use rarefy_host_tests::frames::{Drawn, Prepared, device, mutated_device, renderer_of, twin, walking_by};
 
 /// Where Oclgrind writes what it finds; `None` outside of its script.
 fn log() -> Option<PathBuf> {
@@ -60,9 +62,10 @@ fn no_kernel_races_or_leaves_its_buffers() {
             assert_eq!(drawn.stats.pixels, expected.stats.pixels);
         }
     }
+    draw_with_tail(true);
     // The quick self-test ran too: it launches what these frames do on a larger picture.
     assert_eq!(findings(&log), "", "Oclgrind found something");
-    println!("Oclgrind: {} frames, every kernel, no finding", 2 * frames.len());
+    println!("Oclgrind: {} frames, every kernel, no finding", 2 * frames.len() + 1);
 }
 
 /// A frame on a device of its own, without a quick self-test before: Oclgrind keeps what it knows of a released buffer and
@@ -72,6 +75,19 @@ fn draw_afresh(options: &RenderOptions, counters: bool, traversal: Traversal, mu
     let mut device = mutated_device(true, &walking_by(traversal), mutation);
     assert!(device.info().name.contains("Oclgrind"), "{:?}", device.info());
     prepared.draw(&mut device, options, counters).unwrap()
+}
+
+/// A frame launched as on a GPU, as recorded frames are: Oclgrind is a CPU, whose own frames do without `correct_tail`.
+fn draw_with_tail(counters: bool) {
+    let prepared = Prepared::named("spheres");
+    let options = RenderOptions { width: 26, height: 19, ..RenderOptions::default() };
+    let draw = |executor: &mut dyn Executor| {
+        let mut recording = Recording::default();
+        let (drawn, _) = prepared.draw_observed(executor, &options, counters, &mut [&mut recording]).unwrap();
+        assert!(recording.launches.iter().any(|launch| launch.kernel == Kernel::CorrectTail));
+        drawn
+    };
+    assert!(draw(&mut device(true, &OpenOptions::default())) == draw(&mut twin()), "another picture than the twin's");
 }
 
 #[test]
@@ -94,7 +110,9 @@ fn no_kernel_reads_what_nobody_wrote() {
         assert!(drawn == prepared.draw(&mut twin(), options, *counters).unwrap(), "{options:?}");
         assert_eq!(findings(&log), "", "{options:?}, {}", traversal.name());
     }
-    println!("Oclgrind: {} frames, nothing read that nobody wrote", frames.len());
+    draw_with_tail(false);
+    assert_eq!(findings(&log), "", "correct_tail");
+    println!("Oclgrind: {} frames, nothing read that nobody wrote", frames.len() + 1);
 }
 
 #[test]
