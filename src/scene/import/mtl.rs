@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! MTL files through `tobj`.
-//!
-//! As with OBJ files, `tobj` 4.0.5 reads a checked copy: it panics at `Kd 0.5` (one number means grey), takes NaN, and
-//! keeps the options of maps (`-s 2 2 1 wood.jpg`) as part of the file name.
+//! MTL files. `tobj` reads the OBJ file alone: of an MTL file it would take what nobody checked (it panics at `Kd 0.5`, takes
+//! NaN, and keeps the options of maps as part of the file name), so that every key would have to be read before it is.
 //!
 //! Meaning of the keys, in any letter case: `Kd` diffuse colour; `Ks` highlight, and what a mirror reflects; `Ns`
 //! Blinn-Phong exponent; `Ni` index of refraction; `Tf` colour of light through glass; `d` and `Tr` opacity and
@@ -20,8 +18,8 @@ use super::lines::{LogicalLines, MAX_MTL_BYTES, keyword, name_text, without_comm
 use super::notices::Notices;
 use super::source::Source;
 use super::unused::Tally;
+use crate::Result;
 use crate::scene::UnusedKey;
-use crate::{Error, Result};
 
 /// A `map_` line.
 #[derive(Debug, Clone, PartialEq)]
@@ -59,71 +57,59 @@ pub(super) fn read(
     unused: &mut Vec<UnusedKey>,
 ) -> Result<Vec<MtlMaterial>> {
     let mut tally = Tally::new(path);
-    let checked = check(source, path, warnings, &mut tally)?;
+    let materials = parse(source, path, warnings, &mut tally)?;
     unused.append(&mut tally.into_keys());
-    let (materials, _) = tobj::load_mtl_buf(&mut checked.text.as_bytes())
-        .map_err(|e| Error::scene(path.display().to_string(), format!("not a readable MTL file: {e}")))?;
-    let mut read: Vec<MtlMaterial> = Vec::with_capacity(materials.len());
-    let mut by_name: HashMap<String, usize> = HashMap::new();
     let (mut told, before) = (Notices::default(), warnings.len());
-    for m in materials {
+    for (name, line) in &materials.again {
         told.shorten(warnings, before);
-        let (name, line) = name_of(&checked, &m.name)?;
-        let map = |number: &Option<String>| {
-            number.as_ref().and_then(|n| n.parse().ok()).and_then(|n: usize| checked.maps.get(n).cloned())
-        };
-        let extra = |key: &str| m.unknown_param.get(key).map(String::as_str);
-        let material = MtlMaterial {
-            name: name.clone(),
-            diffuse: m.diffuse.map(Vec3::from),
-            specular: m.specular.map(Vec3::from),
-            shininess: m.shininess,
-            transmission: extra("Tf").and_then(three),
-            index_of_refraction: m.optical_density,
-            dissolve: m.dissolve,
-            transparency: extra("Tr").and_then(|t| t.parse().ok()),
-            illumination_model: m.illumination_model,
-            diffuse_map: map(&m.diffuse_texture),
-            cutout_map: map(&m.dissolve_texture),
-        };
-        match by_name.get(&name) {
-            Some(&earlier) => {
-                warnings
-                    .push(format!("{}:{line}: material `{name}` is defined again; this one counts", path.display()));
-                read[earlier] = material;
-            }
-            None => {
-                by_name.insert(name, read.len());
-                read.push(material);
-            }
-        }
+        warnings.push(format!("{}:{line}: material `{name}` is defined again; this one counts", path.display()));
     }
     told.shorten(warnings, before);
     warnings.append(&mut told.take(&format!("more materials of {} are defined again", path.display())));
-    Ok(read)
+    Ok(materials.list)
 }
 
-fn name_of(checked: &Checked, number: &str) -> Result<(String, usize)> {
-    let found = number.parse().ok().and_then(|n: usize| checked.names.get(n).cloned());
-    found.ok_or_else(|| Error::scene("MTL reader", format!("material number `{number}` is unknown")))
-}
-
-fn three(text: &str) -> Option<Vec3> {
-    let mut values = text.split(' ').map(|v| v.parse::<f32>().ok());
-    Some(Vec3::new(values.next()??, values.next()??, values.next()??))
-}
-
-/// A file in the plain dialect that `tobj` reads without surprises: materials and maps go by number.
+/// The materials of a file so far.
 #[derive(Default)]
-struct Checked {
-    text: String,
-    names: Vec<(String, usize)>,
-    maps: Vec<Map>,
+struct Materials {
+    list: Vec<MtlMaterial>,
+    by_name: HashMap<String, usize>,
+    /// The one that keys belong to: none before the first `newmtl`.
+    current: Option<usize>,
+    /// Names that were defined before, each with the line of its next definition.
+    again: Vec<(String, usize)>,
 }
 
-fn check(source: &Source, path: &Path, warnings: &mut Vec<String>, tally: &mut Tally) -> Result<Checked> {
+impl Materials {
+    /// Begins a material. One of the same name is forgotten.
+    fn begin(&mut self, name: String, line: usize) {
+        let material = MtlMaterial { name: name.clone(), ..MtlMaterial::default() };
+        let at = match self.by_name.get(&name) {
+            Some(&earlier) => {
+                self.list[earlier] = material;
+                self.again.push((name, line));
+                earlier
+            }
+            None => {
+                self.by_name.insert(name, self.list.len());
+                self.list.push(material);
+                self.list.len() - 1
+            }
+        };
+        self.current = Some(at);
+    }
+
+    /// Changes the material that keys belong to.
+    fn set(&mut self, change: impl FnOnce(&mut MtlMaterial)) {
+        if let Some(material) = self.current.and_then(|at| self.list.get_mut(at)) {
+            change(material);
+        }
+    }
+}
+
+fn parse(source: &Source, path: &Path, warnings: &mut Vec<String>, tally: &mut Tally) -> Result<Materials> {
     let mut lines = LogicalLines::open(source, path, MAX_MTL_BYTES)?;
-    let mut checked = Checked::default();
+    let mut materials = Materials::default();
     let (mut told, before) = (Notices::default(), warnings.len());
     while let Some((number, line)) = lines.next_line()? {
         told.shorten(warnings, before);
@@ -161,8 +147,7 @@ fn check(source: &Source, path: &Path, warnings: &mut Vec<String>, tally: &mut T
             if name.is_empty() {
                 warnings.push(format!("{at}:{number}: `newmtl` without a name; faces of `usemtl` without one get it"));
             }
-            checked.text += &format!("newmtl {}\n", checked.names.len());
-            checked.names.push((name, number));
+            materials.begin(name, number);
             continue;
         }
         let mut wrong = |message: String| left_out(format!("`{key}`: {message}"));
@@ -188,8 +173,12 @@ fn check(source: &Source, path: &Path, warnings: &mut Vec<String>, tally: &mut T
                 if rgb.iter().any(|v| !(0.0..=1.0).contains(v)) {
                     warnings.push(format!("{}:{number}: `{key}` is limited to 0 .. 1", path.display()));
                 }
-                let [r, g, b] = rgb.map(|v| v.clamp(0.0, 1.0));
-                checked.text += &format!("{key} {r} {g} {b}\n");
+                let rgb = Some(Vec3::from(rgb.map(|v| v.clamp(0.0, 1.0))));
+                materials.set(|m| match key {
+                    "Kd" => m.diffuse = rgb,
+                    "Ks" => m.specular = rgb,
+                    _ => m.transmission = rgb,
+                });
             }
             "Ns" | "Ni" | "d" | "Tr" => {
                 let rest = rest.strip_prefix(b"-halo").unwrap_or(rest);
@@ -210,7 +199,13 @@ fn check(source: &Source, path: &Path, warnings: &mut Vec<String>, tally: &mut T
                 if !(low..=high).contains(&value) && key != "Ni" {
                     warnings.push(format!("{at}:{number}: `{key} {value}` is limited to {low} .. {high}"));
                 }
-                checked.text += &format!("{key} {}\n", value.clamp(low, high));
+                let value = Some(value.clamp(low, high));
+                materials.set(|m| match key {
+                    "Ns" => m.shininess = value,
+                    "Ni" => m.index_of_refraction = value,
+                    "d" => m.dissolve = value,
+                    _ => m.transparency = value,
+                });
             }
             "illum" => {
                 let text = name_text(words(rest).next().unwrap_or_default());
@@ -221,7 +216,7 @@ fn check(source: &Source, path: &Path, warnings: &mut Vec<String>, tally: &mut T
                         if text.parse() != Ok(whole) {
                             warnings.push(format!("{at}:{number}: `illum {text}` is taken for {whole}"));
                         }
-                        checked.text += &format!("illum {whole}\n");
+                        materials.set(|m| m.illumination_model = Some(whole));
                     }
                     _ => wrong(format!("`{text}` is not an illumination model; 0 to 10 are right")),
                 }
@@ -236,14 +231,16 @@ fn check(source: &Source, path: &Path, warnings: &mut Vec<String>, tally: &mut T
                 if !ignored.is_empty() {
                     warnings.push(format!("{at}:{number}: `{key}` options not used: {}", ignored.join(", ")));
                 }
-                checked.text += &format!("{key} {}\n", checked.maps.len());
-                checked.maps.push(map);
+                materials.set(|m| match key {
+                    "map_Kd" => m.diffuse_map = Some(map),
+                    _ => m.cutout_map = Some(map),
+                });
             }
         }
     }
     told.shorten(warnings, before);
     warnings.append(&mut told.take(&format!("more things are wrong in {}", path.display())));
-    Ok(checked)
+    Ok(materials)
 }
 
 /// The numbers of a line.
