@@ -470,7 +470,7 @@ fn sweep_once(before: &Planes, full: &Planes, shadows: bool) -> Planes {
 }
 
 /// One launch of post-correction at a time, as the method does it, from `sources` in any order.
-fn rounds_by_hand(queue: &mut Queue, mut sources: Vec<u32>, flags: u32) -> u32 {
+fn rounds_by_hand(queue: &mut Queue, mut sources: Vec<u32>, flags: StepFlags) -> u32 {
     let mut fired = 0;
     while !sources.is_empty() {
         let count = sources.len() as u32;
@@ -519,10 +519,10 @@ const NO_STEP: StepParams = StepParams {
     t_conv: 0.0,
     t_tex: 0.0,
     t_gcol: 0.0,
-    tests: 0,
-    flags: 0,
+    tests: FailMask::empty(),
+    flags: StepFlags::empty(),
     scan_group: 0,
-    lenient_tests: 0,
+    lenient_tests: FailMask::empty(),
     t_visible: 0,
     list_end: 0,
     pixel_class: CLASS_CORRECTED,
@@ -552,7 +552,9 @@ fn the_kernels_give_the_same_for_sources_in_any_order() {
                     sources.truncate(sources.len() / 2);
                 }
                 let fired = renderer
-                    .on_last_frame(|_, queue| rounds_by_hand(queue, sources, STEP_STORE | STEP_COMPARE_SHADOW))
+                    .on_last_frame(|_, queue| {
+                        rounds_by_hand(queue, sources, StepFlags::STORE | StepFlags::COMPARE_SHADOW)
+                    })
                     .unwrap();
                 let color = renderer
                     .on_last_frame(|_, queue| queue.read(FrameBuffer::Color, 0..before.class.len()).unwrap())

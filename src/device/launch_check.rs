@@ -32,7 +32,7 @@ pub fn check_launch(
     for binding in kernel.bindings() {
         match binding {
             // Full tracing keeps no attributes unless it is asked to.
-            Binding::Attributes if stage != Stage::Step1 || step.flags & STEP_STORE != 0 => {
+            Binding::Attributes if stage != Stage::Step1 || step.flags.contains(StepFlags::STORE) => {
                 need("words of attributes", u64::from(PLANE_COUNT) * pitch, sizes.attributes as u64)?;
             }
             Binding::Color => need("words of colour", u64::from(frame.width) * rows, sizes.color as u64)?,
@@ -92,7 +92,7 @@ pub fn check_launch(
 
 /// Behind the last list entry whose neighbours a launch of post-correction looks at.
 fn sources_end(step: &StepParams) -> u64 {
-    let ways = if step.flags & STEP_BRIDGE != 0 { STEP4_WAYS_MOST } else { 4 };
+    let ways = if step.flags.contains(StepFlags::BRIDGE) { STEP4_WAYS_MOST } else { 4 };
     u64::from(step.source_offset) + u64::from(step.item_count.div_ceil(ways))
 }
 
@@ -151,7 +151,7 @@ mod tests {
             grid_height: 48,
             item_count: pixels,
             scan_group: 64,
-            flags: STEP_STORE,
+            flags: StepFlags::STORE,
             ..bytemuck::Zeroable::zeroed()
         };
         for (stage, kernel, label) in LAUNCHES {
@@ -169,7 +169,7 @@ mod tests {
         };
         let attributes = less(|sizes| sizes.attributes -= 1);
         assert_eq!(lacks(STEP2A, step, &attributes), Some(("words of attributes", 12 * u64::from(pixels))));
-        assert_eq!(lacks(STEP1, StepParams { flags: 0, ..step }, &attributes), None);
+        assert_eq!(lacks(STEP1, StepParams { flags: StepFlags::empty(), ..step }, &attributes), None);
         assert_eq!(lacks(STEP1, step, &less(|s| s.color -= 1)), Some(("words of colour", u64::from(pixels))));
         let counters = lacks(STEP2C, step, &less(|sizes| sizes.counters -= 1));
         assert_eq!(counters, Some(("words of counters", 6 * u64::from(pixels))));
@@ -178,13 +178,13 @@ mod tests {
         assert_eq!(lacks(STEP2A, StepParams { origin_y: 1, ..step }, &fits), Some(("rows", 49)));
         let behind = StepParams { list_offset: 1, ..step };
         assert_eq!(lacks(STEP2C, behind, &fits), Some(("list entries", u64::from(pixels) + 1)));
-        let source = StepParams { source_offset: pixels, item_count: 5, flags: STEP_BRIDGE, ..step };
+        let source = StepParams { source_offset: pixels, item_count: 5, flags: StepFlags::BRIDGE, ..step };
         assert_eq!(lacks(MARK, source, &fits), Some(("list entries", u64::from(pixels) + 1)));
         let scatter = StepParams { item_count: 32, list_end: pixels + 7, ..step };
         assert_eq!(lacks(STEP3B_SCATTER, scatter, &fits), Some(("list entries", u64::from(pixels) + 7)));
         assert_eq!(lacks(TAIL, scatter, &fits), Some(("list entries", u64::from(pixels) + 7)));
         // What corrupted the heap once: five items for each of up to 15/16 of the pixels.
-        let first_round = StepParams { item_count: 5 * pixels, flags: STEP_BRIDGE, ..step };
+        let first_round = StepParams { item_count: 5 * pixels, flags: StepFlags::BRIDGE, ..step };
         assert_eq!(lacks(COUNT, first_round, &fits), None);
         let small = less(|sizes| sizes.masks = 4 * 64 * 48 / 32);
         assert_eq!(lacks(COUNT, first_round, &small), Some(("mask words", 480)));

@@ -2,12 +2,14 @@
 //! What host and kernels share: structs, numbers, where pixels lie, tables, and the build options that tell kernels.
 
 mod constants;
+mod flags;
 mod flavour;
 mod planes;
 mod structs;
 mod tables;
 
 pub use constants::*;
+pub use flags::{FailMask, StepFlags};
 pub use flavour::{BuildFlavour, SHORT_STACK_ENTRIES, Traversal, build_options};
 pub use planes::{color_index, grid_items, plane_index};
 pub use structs::{FrameParams, Light, Material, StepParams, Texture, Triangle, TriangleShading};

@@ -4,6 +4,8 @@
 
 use bytemuck::{Pod, Zeroable};
 
+use super::flags::{FailMask, StepFlags};
+
 /// `FrameParams` of `kernels/types.h`: what stays the same for a whole frame or one window of it.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
@@ -56,10 +58,10 @@ pub struct StepParams {
     pub t_conv: f32,
     pub t_tex: f32,
     pub t_gcol: f32,
-    pub tests: u32,
-    pub flags: u32,
+    pub tests: FailMask,
+    pub flags: StepFlags,
     pub scan_group: u32,
-    pub lenient_tests: u32,
+    pub lenient_tests: FailMask,
     pub t_visible: u32,
     pub list_end: u32,
     pub pixel_class: u32,

@@ -30,12 +30,13 @@ fn correct_converged(
     seeds: &SeedRanges,
     listed: u32,
 ) -> Result<u32> {
-    let settle = StepParams { item_count: seeds.settled, flags: step.flags | STEP_SETTLE, ..*step };
+    let settle = StepParams { item_count: seeds.settled, flags: step.flags | StepFlags::SETTLE, ..*step };
     trace_list(queue, Stage::Step4, &settle)?;
     let mut list_offset = listed;
     // Traced pixels come first: which edges and lines miss a neighbour, and where gaps are, is seen before any correction.
     if seeds.first_time {
-        let first = StepParams { flags: step.flags | if bridges { STEP_BRIDGE } else { 0 }, ..*step };
+        let first =
+            StepParams { flags: step.flags | if bridges { StepFlags::BRIDGE } else { StepFlags::empty() }, ..*step };
         list_offset += fire_from(queue, &first, seeds.len(), listed - seeds.len(), list_offset)?;
     }
     if seeds.fired > 0 {
@@ -65,7 +66,7 @@ fn fire_from(queue: &mut Queue, step: &StepParams, source_offset: u32, sources: 
     if sources == 0 {
         return Ok(0);
     }
-    let ways = if step.flags & STEP_BRIDGE != 0 { 5 } else { 4 };
+    let ways = if step.flags.contains(StepFlags::BRIDGE) { 5 } else { 4 };
     let round = StepParams { source_offset, list_offset, item_count: ways * sources, ..*step };
     queue.launch(Stage::Step4, Kernel::CorrectMark, &round)?;
     let packing = Packing { stage: Stage::Step4, count: Kernel::CorrectCount, scatter: Kernel::CorrectScatter };

@@ -33,7 +33,7 @@ const A2: AdaptiveStages = AdaptiveStages { check: Stage::Step3a, pack: Stage::S
 /// # Errors
 /// Whatever the executor reports.
 pub fn trace_window(queue: &mut Queue, store: bool) -> Result<()> {
-    let flags = if store { STEP_STORE } else { 0 };
+    let flags = if store { StepFlags::STORE } else { StepFlags::empty() };
     let step = StepParams { flags, pixel_class: CLASS_BASE, ..grid(queue.params(), (0, 0), (1, 1)) };
     queue.launch(Stage::Step1, Kernel::Trace, &step)
 }
@@ -50,7 +50,7 @@ pub fn adaptive_window(
 ) -> Result<ListRanges> {
     let frame = *queue.params();
     let base = grid(&frame, (0, 0), (frame.block, frame.block));
-    let base = StepParams { flags: STEP_STORE, pixel_class: CLASS_BASE, ..base };
+    let base = StepParams { flags: StepFlags::STORE, pixel_class: CLASS_BASE, ..base };
     queue.launch(Stage::Step1, Kernel::Trace, &base)?;
 
     let seeds = list_seeds(queue, seeds)?;
@@ -137,7 +137,7 @@ fn adaptive_grids(frame: &FrameParams, stride: u32, options: &RenderOptions, ext
     let a2 = |params| AdaptiveGrid { stages: A2, params };
     if options.method.checks.second_pairs {
         let odd = step3(half, stride);
-        let odd = StepParams { flags: odd.flags | STEP_OTHER_PAIRS, ..odd };
+        let odd = StepParams { flags: odd.flags | StepFlags::OTHER_PAIRS, ..odd };
         vec![a1, a2(step3(0, stride)), a2(odd)]
     } else {
         vec![a1, a2(step3(0, half))]

@@ -56,7 +56,7 @@ pub fn spreads(hits: Hits, (x, y): (u32, u32), (nx, ny): (u32, u32)) -> bool {
     if !hits_differ(step, &a, &b, color(x, y), color(nx, ny)) {
         return false;
     }
-    step.flags & STEP_THIN_ONLY == 0
+    !step.flags.contains(StepFlags::THIN_ONLY)
         || from_class == CLASS_CORRECTED
         || !SameAround::new(hits, (x, y), (nx, ny)).misses_neighbour(surfaces_differ(step, &a, &b))
 }
@@ -66,7 +66,7 @@ const BRIDGE_ITEM: u32 = 4;
 
 /// Items of a source: one for each neighbour and, with `STEP_BRIDGE`, one for a pixel farther away.
 fn items_per_source(step: &StepParams) -> u32 {
-    if step.flags & STEP_BRIDGE != 0 { 5 } else { 4 }
+    if step.flags.contains(StepFlags::BRIDGE) { 5 } else { 4 }
 }
 
 /// The pixel that item `i` may spread to: its source's left, right, upper or lower neighbour, or the one across a gap.

@@ -15,8 +15,8 @@ pub struct KnownShadows {
 }
 
 /// Whether the failed tests of a pixel leave no doubt about the surface between its references.
-pub fn surface_is_sure(mask: u32) -> bool {
-    mask & (FAIL_G1 | FAIL_G2) == 0 && (mask & FAIL_GC != 0 || mask == FAIL_SH)
+pub fn surface_is_sure(mask: FailMask) -> bool {
+    !mask.intersects(FailMask::G1 | FailMask::G2) && (mask.contains(FailMask::GC) || mask == FailMask::SH)
 }
 
 /// What is known before the shadow rays of pixel `(x, y)`, whose primary ray hit `object`. `attributes` still hold what
@@ -30,7 +30,7 @@ pub fn known_shadows(
     (object, material): (u32, u32),
 ) -> KnownShadows {
     let nothing = KnownShadows::default();
-    if pixel_class == CLASS_BASE || step.flags & STEP_REUSE_SHADOWS == 0 {
+    if pixel_class == CLASS_BASE || !step.flags.contains(StepFlags::REUSE_SHADOWS) {
         return nothing;
     }
     let frame = scene.frame;
@@ -41,7 +41,7 @@ pub fn known_shadows(
         if x + dx >= frame.width || y + dy >= frame.height {
             return nothing;
         }
-        if !surface_is_sure(plane(PLANE_CLASS, at) & FAIL_ALL) {
+        if !surface_is_sure(FailMask::of_class(plane(PLANE_CLASS, at))) {
             return nothing;
         }
         let (a, b) = (plane_index(frame, x - dx, y - dy), plane_index(frame, x + dx, y + dy));
@@ -65,12 +65,26 @@ mod tests {
 
     #[test]
     fn only_reflections_and_lone_shadows_leave_the_surface_out_of_doubt() {
-        for mask in [FAIL_SH, FAIL_GC, FAIL_SH | FAIL_GC, FAIL_G3 | FAIL_GC, FAIL_TX | FAIL_SH | FAIL_GC] {
-            assert!(surface_is_sure(mask), "{mask:#x}");
+        for mask in [
+            FailMask::SH,
+            FailMask::GC,
+            FailMask::SH | FailMask::GC,
+            FailMask::G3 | FailMask::GC,
+            FailMask::TX | FailMask::SH | FailMask::GC,
+        ] {
+            assert!(surface_is_sure(mask), "{mask:?}");
         }
         // The strictest tolerances fail G2 everywhere: nothing is taken over then.
-        for mask in [0, FAIL_G1, FAIL_G2 | FAIL_GC, FAIL_G3, FAIL_G4 | FAIL_SH, FAIL_TX | FAIL_SH, FAIL_ALL] {
-            assert!(!surface_is_sure(mask), "{mask:#x}");
+        for mask in [
+            FailMask::empty(),
+            FailMask::G1,
+            FailMask::G2 | FailMask::GC,
+            FailMask::G3,
+            FailMask::G4 | FailMask::SH,
+            FailMask::TX | FailMask::SH,
+            FailMask::all(),
+        ] {
+            assert!(!surface_is_sure(mask), "{mask:?}");
         }
     }
 }

@@ -139,9 +139,9 @@ pub fn load_attributes(planes: &Words, pitch: u32, at: u32) -> Attributes {
 }
 
 /// Distance of two reflected colours: linear with `STEP_GCOL_LINEAR`, else of the square roots of clamped channels.
-pub fn gcol_distance(a: Vec3, b: Vec3, flags: u32) -> f32 {
+pub fn gcol_distance(a: Vec3, b: Vec3, flags: StepFlags) -> f32 {
     let shown = |c: Vec3| {
-        if flags & STEP_GCOL_LINEAR != 0 {
+        if flags.contains(StepFlags::GCOL_LINEAR) {
             return c;
         }
         Vec3::new(clamp(c.x, 0.0, 1.0).sqrt(), clamp(c.y, 0.0, 1.0).sqrt(), clamp(c.z, 0.0, 1.0).sqrt())
@@ -163,19 +163,19 @@ pub fn hits_differ(step: &StepParams, a: &Attributes, b: &Attributes, color_a: u
     if a.object == NO_OBJECT || !look_different(color_a, color_b, step.t_visible) {
         return false;
     }
-    if step.flags & STEP_COMPARE_SHADOW != 0 && a.shadow_bits != b.shadow_bits {
+    if step.flags.contains(StepFlags::COMPARE_SHADOW) && a.shadow_bits != b.shadow_bits {
         return true;
     }
     // Comparisons are written so that NaN differs, as in the kernel.
-    step.flags & STEP_COMPARE_SHADING != 0
+    step.flags.contains(StepFlags::COMPARE_SHADING)
         && (!(dot(a.normal, b.normal) >= step.t_norm) || !(gcol_distance(a.gcol, b.gcol, step.flags) <= step.t_gcol))
 }
 
 /// Of two hits that differ, whether they differ in more than reflected colours.
 pub fn surfaces_differ(step: &StepParams, a: &Attributes, b: &Attributes) -> bool {
     a.object != b.object
-        || (step.flags & STEP_COMPARE_SHADOW != 0 && a.shadow_bits != b.shadow_bits)
-        || (step.flags & STEP_COMPARE_SHADING != 0 && !(dot(a.normal, b.normal) >= step.t_norm))
+        || (step.flags.contains(StepFlags::COMPARE_SHADOW) && a.shadow_bits != b.shadow_bits)
+        || (step.flags.contains(StepFlags::COMPARE_SHADING) && !(dot(a.normal, b.normal) >= step.t_norm))
 }
 
 /// Writes the work counters of the pixel at plane index `at`, if counters are kept.

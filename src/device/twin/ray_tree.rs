@@ -208,7 +208,7 @@ pub fn needs_correction_ray(frame: &FrameParams, step: &StepParams, planes: &Wor
     if planes.get(at) & CLASS_MASK != CLASS_INTERPOLATED {
         return false;
     }
-    if step.flags & STEP_SETTLE == 0 && (frame.interior_begin..frame.interior_end).contains(&y) {
+    if !step.flags.contains(StepFlags::SETTLE) && (frame.interior_begin..frame.interior_end).contains(&y) {
         return true;
     }
     planes.set(at, planes.get(at) & !CLASS_MASK | CLASS_CONFIRMED);
@@ -241,7 +241,7 @@ pub fn trace_pixel(scene: &SceneArgs, x: u32, y: u32, pixel_class: u32, step: &S
         color = shade_local(scene, &p.shade_point(a.shadow_bits), -d) + a.gcol;
     }
     let word = srgb_word(scene.tables, color);
-    if pixel_class != CLASS_BASE || step.flags & STEP_STORE != 0 {
+    if pixel_class != CLASS_BASE || step.flags.contains(StepFlags::STORE) {
         let pitch = frame.plane_pitch;
         let planes = &out.attributes;
         let mut new_class = pixel_class;

@@ -30,46 +30,46 @@ fn unwrap(a: f32, b: f32) -> f32 {
 }
 
 fn textures_part(step: &StepParams, a: &Attributes, b: &Attributes) -> bool {
-    if step.flags & STEP_UNWRAP != 0 {
+    if step.flags.contains(StepFlags::UNWRAP) {
         return !(around(a.s, b.s) <= step.t_tex) || !(around(a.t, b.t) <= step.t_tex);
     }
     wraps(a.s, b.s, step.t_tex) || wraps(a.t, b.t, step.t_tex)
 }
 
 /// The fail mask of a pair of references: bit `FAIL_*` set where that test fails and is switched on.
-pub fn similarity_checks(scene: &SceneArgs, step: &StepParams, a: &Attributes, b: &Attributes) -> u32 {
+pub fn similarity_checks(scene: &SceneArgs, step: &StepParams, a: &Attributes, b: &Attributes) -> FailMask {
     if a.object != b.object {
-        return FAIL_G1 & step.tests;
+        return FailMask::G1 & step.tests;
     }
     if a.object == NO_OBJECT {
-        return if step.t_pos > 0.0 { 0 } else { FAIL_G2 & step.tests };
+        return if step.t_pos > 0.0 { FailMask::empty() } else { FailMask::G2 & step.tests };
     }
-    let mut mask = 0;
+    let mut mask = FailMask::empty();
     let e = b.position - a.position;
     let distance = dot(e, e).sqrt();
     // Comparisons are written so that NaN fails, as in the kernel.
     if !(distance <= step.t_pos) || !(step.t_pos > 0.0) {
-        mask |= FAIL_G2;
+        mask |= FailMask::G2;
     }
     if !(dot(a.normal, b.normal) >= step.t_norm) {
-        mask |= FAIL_G3;
+        mask |= FailMask::G3;
     }
     let flat = step.t_conv * distance;
     let (slope_a, slope_b) = (dot(e, a.normal), -dot(e, b.normal));
     let sa = if slope_a.abs() <= flat { 0.0 } else { slope_a };
     let sb = if slope_b.abs() <= flat { 0.0 } else { slope_b };
     if (sa > 0.0 && sb < 0.0) || (sa < 0.0 && sb > 0.0) {
-        mask |= FAIL_G4;
+        mask |= FailMask::G4;
     }
     let material = &scene.materials[scene.object_materials[a.object as usize] as usize];
     if material.diffuse_texture != NO_TEXTURE && textures_part(step, a, b) {
-        mask |= FAIL_TX;
+        mask |= FailMask::TX;
     }
     if a.shadow_bits != b.shadow_bits {
-        mask |= FAIL_SH;
+        mask |= FailMask::SH;
     }
     if !(gcol_distance(a.gcol, b.gcol, step.flags) <= step.t_gcol) {
-        mask |= FAIL_GC;
+        mask |= FailMask::GC;
     }
     mask & step.tests
 }
@@ -80,14 +80,14 @@ pub fn interpolate(frame: &FrameParams, step: &StepParams, a: &Attributes, b: &A
         return *a;
     }
     let mut wa = 0.5;
-    if step.flags & STEP_PERSPECTIVE != 0 {
+    if step.flags.contains(StepFlags::PERSPECTIVE) {
         let za = dot(a.position - xyz(frame.eye), xyz(frame.forward));
         let zb = dot(b.position - xyz(frame.eye), xyz(frame.forward));
         wa = zb / (za + zb);
     }
     let wb = 1.0 - wa;
     let texture = |a: f32, b: f32| {
-        if step.flags & STEP_UNWRAP != 0 { fraction(a * wa + unwrap(a, b) * wb) } else { a * wa + b * wb }
+        if step.flags.contains(StepFlags::UNWRAP) { fraction(a * wa + unwrap(a, b) * wb) } else { a * wa + b * wb }
     };
     Attributes {
         position: a.position * wa + b.position * wb,
@@ -103,10 +103,11 @@ pub fn interpolate(frame: &FrameParams, step: &StepParams, a: &Attributes, b: &A
 /// A neighbour: its attributes and its shown colour.
 type Neighbour = (Attributes, u32);
 
-/// The fail mask of a pair, but 0 where only lenient tests fail and the two look alike.
-fn counted_failures(scene: &SceneArgs, step: &StepParams, a: &Neighbour, b: &Neighbour) -> u32 {
+/// The fail mask of a pair, but an empty one where only lenient tests fail and the two look alike.
+fn counted_failures(scene: &SceneArgs, step: &StepParams, a: &Neighbour, b: &Neighbour) -> FailMask {
     let mask = similarity_checks(scene, step, &a.0, &b.0);
-    if mask & !step.lenient_tests != 0 || look_different(a.1, b.1, step.t_visible) { mask } else { 0 }
+    let counts = !step.lenient_tests.contains(mask) || look_different(a.1, b.1, step.t_visible);
+    if counts { mask } else { FailMask::empty() }
 }
 
 /// Another opposite pair around `(x, y)` that is alike, and alike with `a` or `b`, the upper and lower neighbours.
@@ -121,7 +122,7 @@ fn find_other_pair(
     if x + d >= scene.frame.width {
         return None;
     }
-    let alike = |a: &Neighbour, b: &Neighbour| counted_failures(scene, step, a, b) == 0;
+    let alike = |a: &Neighbour, b: &Neighbour| counted_failures(scene, step, a, b).is_empty();
     let pairs = [(y, y), (y - d, y + d), (y + d, y - d)].into_iter().map(|(left, right)| {
         let (p, q) = (neighbour(x - d, left), neighbour(x + d, right));
         let found = alike(&p, &q) && (alike(a, &p) && alike(a, &q) || alike(b, &p) && alike(b, &q));
@@ -152,9 +153,9 @@ pub fn check_pixel(scene: &SceneArgs, step: &StepParams, x: u32, y: u32, out: &F
     let a = neighbour(x - step.reference_dx, y - step.reference_dy);
     let b = neighbour(x + step.reference_dx, y + step.reference_dy);
     let mask = counted_failures(scene, step, &a, &b);
-    let pair = if mask == 0 {
+    let pair = if mask.is_empty() {
         Some((a.0, b.0))
-    } else if step.flags & STEP_OTHER_PAIRS != 0 {
+    } else if step.flags.contains(StepFlags::OTHER_PAIRS) {
         find_other_pair(scene, step, (x, y), (&a, &b), &neighbour)
     } else {
         None
@@ -162,7 +163,7 @@ pub fn check_pixel(scene: &SceneArgs, step: &StepParams, x: u32, y: u32, out: &F
     let Some((a, b)) = pair else {
         let secondary = sends_secondary(scene, &a.0) || sends_secondary(scene, &b.0);
         let secondary = if secondary { CLASS_SECONDARY } else { 0 };
-        planes.set(PLANE_CLASS * pitch + at, CLASS_PENDING | mask | secondary);
+        planes.set(PLANE_CLASS * pitch + at, CLASS_PENDING | mask.bits() | secondary);
         return;
     };
     let m = interpolate(frame, step, &a, &b);

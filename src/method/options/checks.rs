@@ -4,7 +4,7 @@
 use std::str::FromStr;
 
 use crate::error::{Error, Result, Setting};
-use crate::layout::FAIL_G1;
+use crate::layout::FailMask;
 use crate::names::named;
 
 /// A similarity test (paper, "similarity checks").
@@ -30,41 +30,54 @@ pub enum Test {
 named!(Test of Tests { G1 = "g1", G2 = "g2", G3 = "g3", G4 = "g4", Tx = "tx", Sh = "sh", Gc = "gc" });
 
 impl Test {
+    /// The test in the fail mask of a pixel's class.
+    pub const fn fail_mask(self) -> FailMask {
+        match self {
+            Test::G1 => FailMask::G1,
+            Test::G2 => FailMask::G2,
+            Test::G3 => FailMask::G3,
+            Test::G4 => FailMask::G4,
+            Test::Tx => FailMask::TX,
+            Test::Sh => FailMask::SH,
+            Test::Gc => FailMask::GC,
+        }
+    }
+
     /// The test's bit in the class plane.
     pub const fn fail_bit(self) -> u32 {
-        FAIL_G1 << self as u32
+        self.fail_mask().bits()
     }
 }
 
 /// A set of similarity tests.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct TestSet(u32);
+pub struct TestSet(FailMask);
 
 impl TestSet {
     /// No test: nothing but the border of a picture is traced beside base pixels.
-    pub const NONE: TestSet = TestSet(0);
+    pub const NONE: TestSet = TestSet(FailMask::empty());
     /// All seven tests.
-    pub const ALL: TestSet = TestSet(crate::layout::FAIL_ALL);
+    pub const ALL: TestSet = TestSet(FailMask::all());
 
     /// This set and `test`.
     #[must_use]
     pub const fn with(self, test: Test) -> TestSet {
-        TestSet(self.0 | test.fail_bit())
+        TestSet(self.0.union(test.fail_mask()))
     }
 
     /// This set but for `test`.
     #[must_use]
     pub const fn without(self, test: Test) -> TestSet {
-        TestSet(self.0 & !test.fail_bit())
+        TestSet(self.0.difference(test.fail_mask()))
     }
 
     /// Whether `test` is in the set.
     pub const fn has(self, test: Test) -> bool {
-        self.0 & test.fail_bit() != 0
+        self.0.contains(test.fail_mask())
     }
 
-    /// The tests' bits in the class plane.
-    pub const fn fail_bits(self) -> u32 {
+    /// The tests as the fail mask of a pixel's class.
+    pub const fn fail_mask(self) -> FailMask {
         self.0
     }
 }

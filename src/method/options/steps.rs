@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! A method as kernels read it: members of [`StepParams`].
 
-use super::{Compared, Correction, GcolSpace, Interpolation, Method, Test, TextureRule};
+use super::{Compared, Correction, GcolSpace, Interpolation, Method, TextureRule};
 use crate::layout::*;
 
-fn flag(is_on: bool, flag: u32) -> u32 {
-    if is_on { flag } else { 0 }
+fn flag(is_on: bool, flag: StepFlags) -> StepFlags {
+    if is_on { flag } else { StepFlags::empty() }
 }
 
 impl Method {
@@ -21,15 +21,15 @@ impl Method {
             t_conv: tolerances.t_conv,
             t_tex: tolerances.t_tex,
             t_gcol: tolerances.t_gcol,
-            tests: checks.tests.fail_bits(),
-            lenient_tests: flag(is_lenient, Test::Sh.fail_bit()),
+            tests: checks.tests.fail_mask(),
+            lenient_tests: if is_lenient { FailMask::SH } else { FailMask::empty() },
             t_visible: checks.t_shadow.into(),
-            flags: STEP_STORE
-                | flag(self.interpolation == Interpolation::Perspective, STEP_PERSPECTIVE)
-                | flag(checks.gcol_space == GcolSpace::Linear, STEP_GCOL_LINEAR)
-                | flag(checks.textures == TextureRule::Joined, STEP_UNWRAP)
+            flags: StepFlags::STORE
+                | flag(self.interpolation == Interpolation::Perspective, StepFlags::PERSPECTIVE)
+                | flag(checks.gcol_space == GcolSpace::Linear, StepFlags::GCOL_LINEAR)
+                | flag(checks.textures == TextureRule::Joined, StepFlags::UNWRAP)
                 // References four pixels apart agree about too little.
-                | flag(self.reuse_shadows && is_finest, STEP_REUSE_SHADOWS),
+                | flag(self.reuse_shadows && is_finest, StepFlags::REUSE_SHADOWS),
             ..step
         }
     }
@@ -44,12 +44,12 @@ impl Method {
         // Sweeps walk lines side by side: what lies beside a line may be changing.
         let thin_only = matches!(self.correction, Correction::Converged { thin_only: true, .. });
         Some(StepParams {
-            flags: STEP_STORE
-                | flag(compared != Compared::Object, STEP_COMPARE_SHADOW)
-                | flag(matches!(compared, Compared::All { .. }), STEP_COMPARE_SHADING)
-                | flag(self.checks.gcol_space == GcolSpace::Linear, STEP_GCOL_LINEAR)
-                | flag(thin_only, STEP_THIN_ONLY)
-                | flag(self.reuse_shadows, STEP_REUSE_SHADOWS),
+            flags: StepFlags::STORE
+                | flag(compared != Compared::Object, StepFlags::COMPARE_SHADOW)
+                | flag(matches!(compared, Compared::All { .. }), StepFlags::COMPARE_SHADING)
+                | flag(self.checks.gcol_space == GcolSpace::Linear, StepFlags::GCOL_LINEAR)
+                | flag(thin_only, StepFlags::THIN_ONLY)
+                | flag(self.reuse_shadows, StepFlags::REUSE_SHADOWS),
             t_visible: compared.t_visible().unwrap_or(0).into(),
             t_norm,
             t_gcol,
