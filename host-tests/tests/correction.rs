@@ -59,19 +59,19 @@ impl Planes {
             && self.differ(from, to, shadows)
     }
 
-    /// Is `from` at the straight edge of something thick, or on a line that runs along, so that `to` is passed by?
-    fn passes_by(&self, from: usize, to: usize, shadows: bool) -> bool {
+    /// Whether `from` lies at the straight edge of something thick, or on a line that runs past, so that it misses `to`.
+    fn misses_neighbour(&self, from: usize, to: usize, shadows: bool) -> bool {
         let (width, height) = (self.width as isize, (self.class.len() / self.width) as isize);
         let at = |pixel: usize| (pixel as isize % width, pixel as isize / width);
         let ((x, y), (nx, ny)) = (at(from), at(to));
-        let fills = |back: isize, along: isize| {
+        let same = |back: isize, along: isize| {
             let (bx, by) = (x - back * (nx - x) + along * (ny - y), y - back * (ny - y) + along * (nx - x));
             (0..width).contains(&bx)
                 && (0..height).contains(&by)
                 && !self.differ(from, (by * width + bx) as usize, shadows)
         };
-        let is_thick = (-1..=1).all(|along| fills(1, along)) && (fills(0, -1) || fills(0, 1));
-        is_thick || !fills(1, 0) && fills(0, -1) && fills(0, 1)
+        let is_edge = (-1..=1).all(|along| same(1, along)) && (same(0, -1) || same(0, 1));
+        is_edge || !same(1, 0) && same(0, -1) && same(0, 1)
     }
 
     /// Does the pixel differ from those above and below it?
@@ -148,7 +148,7 @@ fn fixed_point(
         let is_traced = before.is(from, &[CLASS_TRACED]);
         let bridged = if rules.bridges && is_traced { before.bridged(from, shadows) } else { None };
         for to in now.neighbours(from).chain(bridged) {
-            let spared = rules.thin_only && is_traced && before.passes_by(from, to, shadows);
+            let spared = rules.thin_only && is_traced && before.misses_neighbour(from, to, shadows);
             let reached = Some(to) == bridged && now.is(to, &[CLASS_INTERPOLATED]);
             if !reached && (spared || !now.spreads(from, to, shadows)) {
                 continue;
