@@ -358,6 +358,8 @@ fn random_round(seed: u64, count: usize, size: f32, snap: usize) {
         // Positions on a lattice make coplanar, axis-parallel, touching and degenerate triangles.
         triangles.iter_mut().flatten().for_each(|p| *p = (*p * grid).round() / grid);
     }
+    // A scene has at least one triangle with an area.
+    triangles.push([Vec3::ZERO, Vec3::X * 0.25, Vec3::Y * 0.25]);
     let scene = soup(triangles);
     let tally = shoot(&scene, &Stand::new(&scene, 1, 1, 0), &mut Random::new(seed), 400);
     assert!(tally.wrong.is_empty(), "{:#?}", tally.wrong);
