@@ -235,4 +235,32 @@ mod tests {
         assert_eq!(scan_words(257, 256), 257 + 2 + 1);
         assert_eq!(scan_words(1000, 2), 1000 + 500 + 250 + 125 + 63 + 32 + 16 + 8 + 4 + 2 + 1);
     }
+
+    #[test]
+    fn the_documents_tell_the_bytes_of_a_sample() {
+        let side = 1024;
+        let phases = side / 2;
+        let frame = FrameParams {
+            width: side,
+            height: side,
+            block: 2,
+            phase_width: phases,
+            phase_height: phases,
+            plane_pitch: side * side,
+            window_end: side,
+            interior_end: side,
+            ..bytemuck::Zeroable::zeroed()
+        };
+        let bytes = |counters| {
+            let sizes = FrameSizes::new(&frame, true, counters, 256).expect("a small frame");
+            (sizes.bytes() as f64 / f64::from(side * side)).round()
+        };
+        let (without, with) = (bytes(false), bytes(true));
+        let readme = include_str!("../../README.md");
+        let said = format!("{without} bytes a sample for an adaptive frame ({with} with work counters)");
+        assert!(readme.contains(&said), "README.md: {said}");
+        let pictures = include_str!("../../docs/large-pictures.md");
+        let said = format!("{without} bytes of device memory a sample, {with} with counters");
+        assert!(pictures.contains(&said), "docs/large-pictures.md: {said}");
+    }
 }
