@@ -18,11 +18,13 @@ impl Keep {
     pub const COUNTERS: Keep = Keep { planes: 0, counters: true };
 
     /// These attribute planes (`PLANE_*`), to be read after the frame.
+    #[doc(hidden)]
     pub fn planes(planes: &[u32]) -> Keep {
         Keep { planes: planes.iter().fold(0, |bits, plane| bits | 1 << plane), counters: false }
     }
 
     /// These counter planes (`COUNTER_*`), to be read after the frame, and the sums of all.
+    #[doc(hidden)]
     pub fn counter_planes(counters: &[u32]) -> Keep {
         Keep { planes: counters.iter().fold(0, |bits, plane| bits | 1 << (PLANE_COUNT + plane)), counters: true }
     }

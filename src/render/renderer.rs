@@ -277,6 +277,7 @@ impl Renderer {
     ///
     /// # Errors
     /// No frame, or one that did not keep this plane; a failing call.
+    #[doc(hidden)]
     pub fn plane(&mut self, plane: u32) -> Result<Vec<u32>> {
         self.kept_plane(plane, "attributes")
     }
@@ -286,6 +287,7 @@ impl Renderer {
     ///
     /// # Errors
     /// No frame, or one that did not keep this counter; a failing call.
+    #[doc(hidden)]
     pub fn counter_plane(&mut self, plane: u32) -> Result<Vec<u32>> {
         self.kept_plane(PLANE_COUNT + plane, "counters")
     }
