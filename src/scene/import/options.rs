@@ -52,12 +52,12 @@ mod tests {
     #[test]
     fn memory_that_cannot_be_had_is_an_error() {
         assert_eq!(filled(7u8, 3, "x").unwrap(), [7; 3]);
-        let message = filled(0u32, usize::MAX / 8, "a.obj").unwrap_err().to_string();
+        let message = filled(0u32, usize::MAX / 4, "a.obj").unwrap_err().to_string();
         assert!(message.starts_with("a.obj: not enough memory: "), "{message}");
         let mut values = vec![1u64];
         reserve(&mut values, 10, "x").unwrap();
         assert!(values.capacity() > 1000);
-        assert!(reserve(&mut values, usize::MAX / 16, "a.obj").is_err());
+        assert!(reserve(&mut values, usize::MAX / 8, "a.obj").is_err());
         assert_eq!(values, [1]);
     }
 }
