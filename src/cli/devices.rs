@@ -117,7 +117,7 @@ fn choice_rows(device: &DeviceFound, profile: Option<&Profile>) -> Rows {
                 shapes.push(shape);
             }
         }
-        rows.push((format!("work-group of {}, items", stage.name()), shapes.join(" ")));
+        rows.push((format!("work-group of {}, items", stage.name()), shapes.join(",")));
     }
     let scan = scan_group(&limits);
     let path = choices.memory_path();
