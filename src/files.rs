@@ -108,10 +108,24 @@ impl Seek for InputFile {
 /// # Errors
 /// [`Error::Io`] if it cannot be written.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
+    write_whole_by(path, &mut |writer| writer.write_all(bytes))
+}
+
+/// What writes a file's bytes to the writer that it is given.
+pub(crate) type Fill<'a> = dyn FnMut(&mut dyn Write) -> io::Result<()> + 'a;
+
+/// As [`write_whole`], with what `fill` writes: a large file need not be in memory, except on its way into a pipe.
+///
+/// # Errors
+/// [`Error::Io`] if it cannot be written, or `fill` fails.
+pub(crate) fn write_whole_by(path: &Path, fill: &mut Fill) -> Result<()> {
     match target(path)? {
-        Target::New => replace(path, path, bytes, None),
-        Target::File(target, permissions) => replace(path, &target, bytes, Some(permissions)),
-        Target::Stream => write_to_stream(path, bytes).map_err(|e| Error::io(path, e)),
+        Target::New => replace(path, path, fill, None),
+        Target::File(target, permissions) => replace(path, &target, fill, Some(permissions)),
+        Target::Stream => {
+            let mut bytes = Vec::new();
+            fill(&mut bytes).and_then(|()| write_to_stream(path, &bytes)).map_err(|e| Error::io(path, e))
+        }
     }
 }
 
@@ -182,7 +196,7 @@ fn target(path: &Path) -> Result<Target> {
 /// # Errors
 /// [`Error::Io`] if it cannot be written.
 pub(crate) fn write_own(path: &Path, bytes: &[u8]) -> Result<()> {
-    replace(path, path, bytes, None)
+    replace(path, path, &mut |writer| writer.write_all(bytes), None)
 }
 
 /// Makes a folder of files whole or not at all: `fill` gets a folder beside it, which is renamed at the end. What is at
@@ -215,8 +229,8 @@ pub(crate) fn folder_of(path: &Path) -> PathBuf {
     }
 }
 
-/// Writes `bytes` beside `target` and renames the result to it; `path` is what messages name.
-fn replace(path: &Path, target: &Path, bytes: &[u8], permissions: Option<fs::Permissions>) -> Result<()> {
+/// Writes a file beside `target` and renames it to that; `path` is what messages name.
+fn replace(path: &Path, target: &Path, fill: &mut Fill, permissions: Option<fs::Permissions>) -> Result<()> {
     let failed = |e: io::Error| Error::io(path, e);
     let folder = folder_of(target);
     // The system's message alone ("No such file") would leave open which file is meant.
@@ -230,7 +244,7 @@ fn replace(path: &Path, target: &Path, bytes: &[u8], permissions: Option<fs::Per
     if let Some(permissions) = permissions {
         file.as_file().set_permissions(permissions).map_err(failed)?;
     }
-    file.as_file_mut().write_all(bytes).map_err(failed)?;
+    fill(file.as_file_mut()).map_err(failed)?;
     // Some file systems report a full disk only now.
     file.as_file().sync_all().map_err(failed)?;
     file.persist(target).map_err(|e| failed(e.error))?;

@@ -2,6 +2,7 @@
 //! Fixtures and assertions that the desktop tests share.
 #![allow(clippy::unwrap_used)]
 
+pub mod baked;
 pub mod clang;
 pub mod command;
 pub mod contexts;

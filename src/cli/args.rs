@@ -39,6 +39,8 @@ pub enum Command {
     Selftest(SelftestArgs),
     /// Report what is odd about a scene.
     Doctor(DoctorArgs),
+    /// Write a scene as one file that loads in a fraction of the time: for apps.
+    Bake(BakeArgs),
     /// Write a built-in scene as OBJ, MTL, PNG and view.json.
     MakeScene(MakeSceneArgs),
 }
@@ -78,7 +80,7 @@ pub enum BuildArg {
 /// What commands that draw have in common.
 #[derive(Debug, Args)]
 pub struct DrawArgs {
-    /// A folder with scene.obj and view.json, an OBJ file, or the name of a built-in scene.
+    /// A folder with scene.obj and view.json, an OBJ file, a baked file, or the name of a built-in scene.
     pub scene: PathBuf,
     /// Size of the picture in pixels.
     #[arg(long, value_parser = parse_size, default_value = "1024x1024", allow_hyphen_values = true)]
@@ -226,11 +228,24 @@ pub struct SelftestArgs {
 /// `rarefy doctor`.
 #[derive(Debug, Args)]
 pub struct DoctorArgs {
-    /// A folder with scene.obj and view.json, an OBJ file, or the name of a built-in scene.
+    /// A folder with scene.obj and view.json, an OBJ file, a baked file, or the name of a built-in scene.
     pub scene: PathBuf,
     /// Write the findings as JSON into this file; `-` is standard output.
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
+}
+
+/// `rarefy bake`.
+#[derive(Debug, Args)]
+pub struct BakeArgs {
+    /// A folder with scene.obj and view.json, an OBJ file, a baked file, or the name of a built-in scene.
+    pub scene: PathBuf,
+    /// The file to write.
+    #[arg(short, long)]
+    pub output: PathBuf,
+    /// Shading rules, which stay those of the file.
+    #[arg(long, value_parser = named::<Shading>, default_value = "full", value_name = "full|anchor")]
+    pub shading: Shading,
 }
 
 /// `rarefy make-scene`.

@@ -3,6 +3,7 @@
 //! 2 error, 130 interrupted.
 
 mod args;
+mod bake;
 mod compare;
 mod devices;
 mod diff;
@@ -66,6 +67,7 @@ fn dispatch(command: &Command, interrupt: &Interrupt) -> Result<bool> {
         Command::Devices(args) => devices::run(args).map(|()| true),
         Command::Selftest(args) => selftest::run(args),
         Command::Doctor(args) => doctor::run(args, interrupt).map(|()| true),
+        Command::Bake(args) => bake::run(args, interrupt).map(|()| true),
         Command::MakeScene(args) => {
             interrupt.watch(|_| rarefy::internal::scene::builtin::write(&args.name, &args.output))?;
             output::say(None, &args.output.display().to_string());

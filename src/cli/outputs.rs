@@ -63,7 +63,11 @@ impl Outputs {
         }
     }
 
-    fn file(&mut self, option: &str, path: &Path) -> Result<()> {
+    /// `option` asks for a file at `path`.
+    ///
+    /// # Errors
+    /// If it cannot be written there.
+    pub fn file(&mut self, option: &str, path: &Path) -> Result<()> {
         let Some(full_name) = files::check_writable(path)? else { return Ok(()) };
         let refuse =
             |why: String| Err(Error::argument(option, format!("{}: {why}; name another file", path.display())));

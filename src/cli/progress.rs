@@ -12,7 +12,7 @@ use rarefy::internal::prepare::{PreparedScene, Shading};
 use rarefy::internal::render::renderer::Renderer;
 use rarefy::internal::scene::doctor::notices;
 use rarefy::internal::scene::{self, builtin};
-use rarefy::{Result, Scene};
+use rarefy::{Error, Result, Scene};
 
 use super::interrupt::Interrupt;
 use super::output::{note_all, warn_all};
@@ -100,6 +100,50 @@ fn load(path: &Path, monitor: &Monitor) -> Result<Scene> {
     }
 }
 
+/// A scene that was loaded and prepared.
+pub struct Loaded {
+    pub prepared: PreparedScene,
+    /// How long loading took; preparing counts for itself.
+    pub load_ms: f64,
+    warnings: Vec<String>,
+    notices: Vec<String>,
+}
+
+impl Loaded {
+    /// Tells what a user should know about the scene.
+    pub fn tell(&self) {
+        warn_all(&self.warnings);
+        note_all(&self.notices);
+    }
+}
+
+/// Loads the scene that `name` means and prepares it for `shading`, or reads a baked one.
+pub fn load_prepared(name: &Path, shading: Shading, interrupt: &Interrupt) -> Result<Loaded> {
+    with_bar(interrupt, |monitor| prepare(name, shading, monitor))
+}
+
+fn prepare(name: &Path, shading: Shading, monitor: &Monitor) -> Result<Loaded> {
+    let started = Instant::now();
+    if PreparedScene::is_baked_file(name) {
+        let prepared = PreparedScene::from_baked_file(name, monitor)?;
+        if prepared.shading() != shading {
+            let message = format!(
+                "{} is baked with `{}` shading and cannot be drawn with another; bake it again with `{shading}`",
+                name.display(),
+                prepared.shading()
+            );
+            return Err(Error::argument("--shading", message));
+        }
+        let load_ms = started.elapsed().as_secs_f64() * 1e3;
+        return Ok(Loaded { prepared, load_ms, warnings: Vec::new(), notices: Vec::new() });
+    }
+    let scene = load(name, monitor)?;
+    let load_ms = started.elapsed().as_secs_f64() * 1e3;
+    let warnings = scene.warnings().to_vec();
+    let notices = notices(&scene);
+    Ok(Loaded { prepared: PreparedScene::new(&scene, shading, monitor)?, load_ms, warnings, notices })
+}
+
 /// Loads a scene and makes a renderer of it; the milliseconds are those of the loading.
 pub fn make_renderer(
     name: &Path,
@@ -107,18 +151,11 @@ pub fn make_renderer(
     options: &DeviceOptions,
     interrupt: &Interrupt,
 ) -> Result<(Renderer, f64)> {
-    let (renderer, load_ms, warnings, notices) = with_bar(interrupt, |monitor| {
-        let started = Instant::now();
-        let scene = load(name, monitor)?;
-        let load_ms = started.elapsed().as_secs_f64() * 1e3;
-        let warnings = scene.warnings().to_vec();
-        let notices = notices(&scene);
-        let prepared = Arc::new(PreparedScene::new(&scene, shading, monitor)?);
-        drop(scene);
-        Ok((Renderer::new(prepared, options, monitor)?, load_ms, warnings, notices))
-    })?;
-    warn_all(&warnings);
-    note_all(&notices);
+    let loaded = load_prepared(name, shading, interrupt)?;
+    loaded.tell();
+    let Loaded { prepared, load_ms, .. } = loaded;
+    let prepared = Arc::new(prepared);
+    let renderer = with_bar(interrupt, |monitor| Renderer::new(prepared, options, monitor))?;
     warn_all(renderer.notices());
     Ok((renderer, load_ms))
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! From a scene to what kernels read: the kd-tree and flat arrays.
+//! From a scene to what kernels read: the kd-tree and flat arrays; baked files of both.
 
+mod baked;
 pub mod kdtree;
 mod prepared_scene;
 

@@ -28,7 +28,8 @@ crate::names::named!(Shading of Shading { Full = "full", Anchor = "anchor" });
 /// A scene as the kernels read it: a kd-tree, flat arrays, textures, and the view that it is looked at from unless
 /// another one is set.
 ///
-/// It is checked when it is made and cannot be changed afterwards. Threads and renderers may share one in an
+/// It is checked when it is made and cannot be changed afterwards. [`PreparedScene::bake`] writes it to a file that loads
+/// in a fraction of the time. Threads and renderers may share one in an
 /// [`std::sync::Arc`]; it holds nothing of the [`Scene`] that it was made of.
 #[derive(Debug, Clone)]
 pub struct PreparedScene {
@@ -45,6 +46,8 @@ pub struct PreparedScene {
     pub(crate) materials: Vec<layout::Material>,
     /// The material of each object.
     pub(crate) object_materials: Vec<u32>,
+    /// The name of each object.
+    pub(crate) object_names: Vec<String>,
     /// Where each texture's texels lie; never empty.
     pub(crate) textures: Vec<layout::Texture>,
     /// Texels of all textures; never empty.
@@ -91,6 +94,7 @@ impl PreparedScene {
             triangle_shading,
             materials,
             object_materials,
+            object_names: scene.objects().iter().map(|object| object.name.clone()).collect(),
             textures,
             texels,
             tables: layout::tables(),
@@ -114,6 +118,11 @@ impl PreparedScene {
         self.triangles.len()
     }
 
+    /// The names of its objects, by their ids: those that the plane of objects holds.
+    pub fn object_names(&self) -> &[String] {
+        &self.object_names
+    }
+
     /// The kd-tree.
     pub fn tree(&self) -> &KdTree {
         &self.tree
@@ -124,7 +133,7 @@ impl PreparedScene {
         self.shading
     }
 
-    /// How long the kd-tree took to build, in milliseconds.
+    /// How long the kd-tree took to build, in milliseconds; 0 if it came from a baked file.
     pub fn kdtree_ms(&self) -> f64 {
         self.kdtree_ms
     }
