@@ -157,6 +157,17 @@ pub enum Error {
         /// The compiler's log, with kernel files and lines.
         log: String,
     },
+    /// A driver ended the process at an earlier start, so that the same is not done again.
+    #[error(
+        "the process ended at an earlier start while {device} was {work}; that is not tried again{}",
+        in_brackets(Remedy::OF_A_CRASH)
+    )]
+    DriverCrashed {
+        /// The device and its driver version, or `OpenCL` if it was not known yet.
+        device: String,
+        /// What it was doing: building a program, running a kernel, telling its devices.
+        work: String,
+    },
     /// A device computes wrong results.
     #[error("self-test failed on {device}: {stage}: {message}")]
     SelfTest {
@@ -228,12 +239,17 @@ pub enum Remedy {
     BufferMemory,
     /// A start that is rounded up.
     RoundedStart,
+    /// Doing again what ended the process.
+    Retry,
 }
 
 impl Remedy {
     /// What helps where drawing takes a device too long.
     pub const OF_A_LOST_DEVICE: &'static [Remedy] =
         &[Remedy::ShorterSlices, Remedy::SmallerPicture, Remedy::FewerSamples, Remedy::CpuTwin];
+
+    /// What can be done where a driver ended the process.
+    pub const OF_A_CRASH: &'static [Remedy] = &[Remedy::Retry, Remedy::CpuTwin];
 }
 
 impl std::fmt::Display for Remedy {
@@ -254,6 +270,7 @@ impl std::fmt::Display for Remedy {
             Remedy::ShorterSlices => "a lower `slice_ms` in the profile's `choices`",
             Remedy::BufferMemory => "the memory path `buffers` in the profile's `choices`",
             Remedy::RoundedStart => "a start that is rounded up",
+            Remedy::Retry => "`retry_crashed` after a system update",
         })
     }
 }

@@ -32,6 +32,10 @@
 //! and a [`Profile`] whose limits OpenCL is held to. Whatever memory the budget leaves, the picture is the same: frames that
 //! do not fit are drawn in bands.
 //!
+//! Where a driver is missing, crashes or computes wrongly, something else draws, and [`Renderer::passed_over`] says why: see
+//! [`Renderer::new`]. [`devices`] reports what there is. An app gives its cache folder ([`CacheFolder::At`]), in which
+//! compiled kernels and what is known of drivers are kept.
+//!
 //! [`RenderOptions`] choose size, samples, [`Mode`] and the [`Method`]: [`Method::balanced`] is the default,
 //! [`Method::fast`] starts from a sixteenth of the pixels, [`Method::paper`] is the paper's. A method is a value; its fields
 //! are in [`tuning`]:
@@ -111,7 +115,8 @@ use internal::{
 };
 
 pub use analysis::layers::{Layer, draw as draw_layer};
-pub use device::open::{DeviceChoice, DeviceOptions};
+pub use device::open::{DeviceChoice, DeviceOptions, DeviceReport, DeviceSummary, RefusedLibrary, devices};
+pub use device::opencl::CacheFolder;
 pub use device::profiles::Profile;
 pub use error::{Error, Result, Setting};
 pub use method::counts::Keep;

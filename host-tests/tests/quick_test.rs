@@ -116,7 +116,8 @@ fn refused_by_name(stages: &[Stage]) {
         println!("{first}");
         assert_eq!(refusal("second start"), first, "the verdict is kept");
     }
-    assert_eq!(verdicts(folder.path()).len(), stages.len());
+    // Of the usual build, and of the careful one.
+    assert_eq!(verdicts(folder.path()).len(), 2 * stages.len());
 }
 
 #[test]
@@ -133,7 +134,9 @@ fn auto_falls_back_with_a_notice() {
         assert_eq!(notices.len(), 1, "{notices:?}");
         assert!(notices[0].starts_with("drawing on the CPU twin: self-test failed on "), "{notices:?}");
         assert!(notices[0].contains("step2b"), "{notices:?}");
-        assert_eq!(verdicts(folder.path()).len(), 1);
+        assert_eq!(fallen.passed_over().len(), 2);
+        // Of the usual build, and of the careful one.
+        assert_eq!(verdicts(folder.path()).len(), 2);
     }
     // A program that does not even build.
     let mutation = Mutation { file: "pack.cl".into(), from: "__kernel".into(), to: "__colonel".into() };
@@ -142,8 +145,8 @@ fn auto_falls_back_with_a_notice() {
     assert!(fallen.notices()[0].contains("`pack` does not build"), "{:?}", fallen.notices());
     let refused = renderer(&options(OPENCL, folder.path(), Some(mutation))).err();
     assert!(matches!(refused, Some(Error::KernelBuild { .. })), "{refused:?}");
-    // Only verdicts are kept, and an intact device is none the worse.
-    assert_eq!(verdicts(folder.path()).len(), 1);
+    // A build that fails is no verdict, and an intact device is none the worse.
+    assert_eq!(verdicts(folder.path()).len(), 2);
     let sound = renderer(&options(DeviceChoice::Auto, folder.path(), None)).unwrap();
     assert_eq!((sound.info().backend, sound.notices().len()), ("opencl", 0));
 }

@@ -100,6 +100,9 @@ pub struct DrawArgs {
     /// Hold the OpenCL device to a profile's limits: none, a built-in name such as adreno-420, or a file.
     #[arg(long, default_value = "none")]
     pub profile: OsString,
+    /// Try again what ended the process, or did not build, at an earlier start.
+    #[arg(long)]
+    pub retry_crashed: bool,
     /// Most device memory in MiB.
     #[arg(long, value_name = "MiB")]
     pub memory_budget: Option<u64>,
@@ -126,6 +129,7 @@ impl DrawArgs {
             profile: profile(&self.profile)?,
             strict: matches!(self.build, BuildArg::Strict),
             memory_budget_bytes: budget.transpose()?,
+            retry_crashed: self.retry_crashed,
             ..DeviceOptions::default()
         })
     }

@@ -46,6 +46,7 @@ fn remedy(remedy: Remedy) -> String {
         Remedy::ConvergedCorrection => "--correction-method converged".into(),
         Remedy::OtherDevice => "another --device".into(),
         Remedy::CpuTwin => "--device cpu".into(),
+        Remedy::Retry => "--retry-crashed".into(),
         Remedy::ShorterSlices => "a --profile with lower `slice_ms`".into(),
         Remedy::SmallerWorkGroup => "a --profile with a smaller work-group".into(),
         other => other.to_string(),
@@ -78,6 +79,10 @@ pub fn line(error: &Error) -> String {
         Error::DeviceLost { device, cause } => {
             format!("{device} was lost twice in one frame: {cause}{}", remedies(Remedy::OF_A_LOST_DEVICE))
         }
+        Error::DriverCrashed { device, work } => format!(
+            "the process ended at an earlier start while {device} was {work}; that is not tried again{}",
+            remedies(Remedy::OF_A_CRASH)
+        ),
         other => other.to_string(),
     };
     one_line(&text)
@@ -143,6 +148,12 @@ mod tests {
         let lost = Error::DeviceLost { device: "x".into(), cause: "y".into() };
         assert!(line(&lost).contains("--profile") && line(&lost).ends_with("--device cpu)"), "{}", line(&lost));
         assert!(line(&Error::NoOpenCl { tried: vec!["z".into()] }).ends_with("z (use --device cpu)"));
+        let crashed = Error::DriverCrashed { device: "x".into(), work: "building program `trace`".into() };
+        assert!(
+            line(&crashed).ends_with("not tried again (use --retry-crashed or --device cpu)"),
+            "{}",
+            line(&crashed)
+        );
         let log = "step1.cl:3: error: a\n   int b\n\n".to_owned();
         let build = Error::KernelBuild { program: "step1".into(), device: "x".into(), log };
         assert!(line(&build).ends_with("on x: | step1.cl:3: error: a | int b"), "{}", line(&build));

@@ -29,6 +29,7 @@ impl Interrupt {
                 Some(cancel) => cancel.cancel(),
                 None => {
                     say();
+                    rarefy::internal::device::opencl::markers::withdraw_all();
                     std::process::exit(STATUS.into());
                 }
             }

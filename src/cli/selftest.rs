@@ -22,8 +22,14 @@ pub fn run(args: &SelftestArgs) -> Result<bool> {
             Some(selftest::breaking_mutation(stage))
         }
     };
-    let options =
-        DeviceOptions { device: args.device, profile: profile(&args.profile)?, mutation, ..DeviceOptions::default() };
+    let options = DeviceOptions {
+        device: args.device,
+        profile: profile(&args.profile)?,
+        mutation,
+        // Whoever asks for a test wants to know how it is now.
+        retry_crashed: true,
+        ..DeviceOptions::default()
+    };
     let result = selftest::run(&options)?;
     say(None, &result.device);
     for check in &result.checks {

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Which device is wanted, under which limits, and opening it.
 
+use std::path::PathBuf;
+
 use super::kernels::Mutation;
 use super::opencl::executor::OpenClExecutor;
 use super::opencl::{self, CacheFolder, Faults, OpenOptions};
 use super::profiles::Profile;
 use crate::error::Result;
+
+pub use super::opencl::{DeviceReport, DeviceSummary, RefusedLibrary};
 
 /// Which device draws.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -30,14 +34,50 @@ pub struct DeviceOptions {
     pub strict: bool,
     /// Most device memory, in bytes.
     pub memory_budget_bytes: Option<u64>,
-    /// Where compiled programs and verdicts of self-tests are kept.
+    /// Where compiled programs and what is known of drivers are kept. An app gives a folder in its own cache
+    /// ([`CacheFolder::At`]), without which a driver that crashed is tried again at every start.
     pub cache: CacheFolder,
+    /// An OpenCL library to try before all others. The library is chosen once in a process, by whoever opens a device or
+    /// asks [`crate::devices`] first.
+    pub opencl_library: Option<PathBuf>,
+    /// Does again what ended the process at an earlier start ([`crate::Error::DriverCrashed`]), and builds again what did
+    /// not build. For a user who asks for it, or after a system update.
+    pub retry_crashed: bool,
     /// Kernels broken on purpose, for tests and the self-test's negative control.
     #[doc(hidden)]
     pub mutation: Option<Mutation>,
     /// For tests: when the OpenCL device is lost.
     #[doc(hidden)]
     pub faults: Faults,
+}
+
+/// What there is to draw with: OpenCL libraries that were tried, devices and what was passed over. Nothing is opened, and
+/// nothing fails.
+pub fn devices(options: &DeviceOptions) -> DeviceReport {
+    opencl::report(&open_options(options, None, false))
+}
+
+fn open_options(options: &DeviceOptions, index: Option<usize>, careful: bool) -> OpenOptions {
+    OpenOptions {
+        index,
+        profile: options.profile.clone(),
+        library: options.opencl_library.clone(),
+        memory_budget_bytes: options.memory_budget_bytes,
+        cache: options.cache.clone(),
+        retry_crashed: options.retry_crashed,
+        careful,
+        slice_items: None,
+        faults: options.faults.clone(),
+    }
+}
+
+/// The OpenCL device of number `index`, with the usual or the careful build of kernels.
+///
+/// # Errors
+/// As for [`open_opencl`].
+pub(crate) fn open_number(options: &DeviceOptions, index: Option<usize>, careful: bool) -> Result<OpenClExecutor> {
+    let context = opencl::open_with(&open_options(options, index, careful))?;
+    Ok(OpenClExecutor::new(context, options.strict, options.mutation.clone()))
 }
 
 /// The OpenCL device that `options` ask for; `None` if they ask for the CPU twin.
@@ -50,13 +90,5 @@ pub fn open_opencl(options: &DeviceOptions) -> Result<Option<OpenClExecutor>> {
         DeviceChoice::Auto => None,
         DeviceChoice::OpenCl(index) => index,
     };
-    let open = OpenOptions {
-        index,
-        profile: options.profile.clone(),
-        memory_budget_bytes: options.memory_budget_bytes,
-        cache: options.cache.clone(),
-        faults: options.faults.clone(),
-        ..OpenOptions::default()
-    };
-    Ok(Some(OpenClExecutor::new(opencl::open_with(&open)?, options.strict, options.mutation.clone())))
+    open_number(options, index, false).map(Some)
 }

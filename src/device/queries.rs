@@ -38,6 +38,27 @@ impl Query {
     pub fn find(key: &str) -> Option<&'static Query> {
         QUERIES.iter().find(|query| query.key == key)
     }
+
+    /// Whether a device of this version with these extensions knows the query. A platform's version does not matter: it may
+    /// be newer than its devices, whose drivers end the process when they are asked what they do not know.
+    pub fn may_be_asked(&self, version: Option<(u32, u32)>, extensions: &str) -> bool {
+        let version = version.unwrap_or((1, 0));
+        let has = |name: &str| extensions.split_whitespace().any(|extension| extension == name);
+        match self.key {
+            "cl_device_half_fp_config" => has("cl_khr_fp16"),
+            "cl_device_image_pitch_alignment" | "cl_device_image_base_address_alignment" => {
+                version >= (2, 0) || has("cl_khr_image2d_from_buffer")
+            }
+            "cl_device_double_fp_config" => version >= (1, 2) || has("cl_khr_fp64"),
+            "cl_device_image_max_array_size"
+            | "cl_device_image_max_buffer_size"
+            | "cl_device_linker_available"
+            | "cl_device_built_in_kernels"
+            | "cl_device_printf_buffer_size" => version >= (1, 2),
+            "cl_device_host_unified_memory" | "cl_device_opencl_c_version" => version >= (1, 1),
+            _ => true,
+        }
+    }
 }
 
 const TYPES: &[(&str, u64)] = &[
@@ -136,3 +157,22 @@ pub(crate) static QUERIES: &[Query] = &[
     device("cl_device_execution_capabilities", CL_DEVICE_EXECUTION_CAPABILITIES, Kind::Bits(EXECUTES)),
     device("cl_device_extensions", CL_DEVICE_EXTENSIONS, Kind::Words),
 ];
+
+#[cfg(test)]
+mod tests {
+    use super::Query;
+
+    #[test]
+    fn a_device_is_asked_what_its_version_has() {
+        let asked = |version, extensions: &str, key: &str| {
+            Query::find(key).is_some_and(|query| query.may_be_asked(version, extensions))
+        };
+        let pitch = "cl_device_image_pitch_alignment";
+        assert!(!asked(Some((1, 2)), "cl_khr_fp16 cl_khr_image2d_from_buffers", pitch));
+        assert!(asked(Some((1, 2)), "cl_khr_fp16 cl_khr_image2d_from_buffer", pitch));
+        assert!(asked(Some((2, 0)), "", pitch));
+        assert!(!asked(Some((3, 0)), "", "cl_device_half_fp_config"));
+        assert!(!asked(None, "", "cl_device_printf_buffer_size"));
+        assert!(asked(None, "", "cl_device_name"));
+    }
+}

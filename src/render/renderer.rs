@@ -11,7 +11,7 @@ use crate::device::executor::{Executor, ExecutorInfo};
 use crate::device::frame_memory::FrameHandle;
 use crate::device::hooks::progress::Progress;
 use crate::device::launch::SceneHandle;
-use crate::device::open::{DeviceChoice, DeviceOptions, open_opencl};
+use crate::device::open::{DeviceChoice, DeviceOptions, devices, open_number};
 use crate::device::opencl::codes;
 use crate::device::queue::{Hook, Queue};
 use crate::device::stage::Stage;
@@ -61,12 +61,20 @@ pub struct Renderer {
     memory_budget_bytes: Option<u64>,
     upload_ms: f64,
     notices: Vec<String>,
+    passed_over: Vec<Error>,
+    /// Whether another device may draw where this one cannot.
+    may_change_device: bool,
     monitor: Monitor,
 }
 
 impl Renderer {
     /// Opens the device that `options` ask for and uploads the scene. `monitor` watches that, and the renderer's frames
     /// until [`Renderer::set_monitor`].
+    ///
+    /// A driver that this version has not met compiles kernels and is tested, which may take seconds. With
+    /// [`DeviceChoice::Auto`] whatever is wrong with a driver is no error: the first device with its usual kernels, the
+    /// same with kernels that are built with care, further devices and at last the CPU are tried.
+    /// [`Renderer::passed_over`] says what did not do.
     ///
     /// # Errors
     /// No usable device, a scene beyond the device's limits, or a failing call. [`Error::Cancelled`].
@@ -75,8 +83,10 @@ impl Renderer {
         let part = monitor.part("device", 0.0, 1.0);
         part.check()?;
         let started = Instant::now();
-        let mut notices = Vec::new();
-        let mut executor = open_executor(&scene, options, &mut notices, &part)?;
+        let mut passed_over = Vec::new();
+        let opened = open_executor(&scene, options, &mut passed_over, &part)?;
+        let notices = opened.notice(&passed_over).into_iter().collect();
+        let mut executor = opened.executor;
         executor.watch(&part);
         let uploaded = executor.upload(&scene);
         executor.watch(&Monitor::default());
@@ -93,6 +103,8 @@ impl Renderer {
             memory_budget_bytes: options.memory_budget_bytes,
             upload_ms: started.elapsed().as_secs_f64() * 1e3,
             notices,
+            passed_over,
+            may_change_device: options.device == DeviceChoice::Auto,
             monitor: monitor.clone(),
         })
     }
@@ -154,6 +166,11 @@ impl Renderer {
         let lost = match self.draw(options, keep, observers, inspect) {
             Err(_) if self.monitor.check().is_err() => return Err(Error::Cancelled),
             Err(error) if codes::is_loss(&error) => error,
+            Err(error @ (Error::KernelBuild { .. } | Error::DriverCrashed { .. })) if self.may_change_device => {
+                // A program that no frame needed so far.
+                self.draw_on_twin(error)?;
+                return self.draw(options, keep, observers, inspect);
+            }
             done => return done,
         };
         let device = self.executor.info().describe();
@@ -162,6 +179,18 @@ impl Renderer {
         self.notices.push(format!("{device} was lost ({lost}) and opened again; {changed}"));
         self.draw(options, keep, observers, inspect)
             .map_err(|error| if codes::is_loss(&error) { self.lost(&error) } else { error })
+    }
+
+    /// Goes over to the CPU twin, since the device cannot build what a frame needs.
+    fn draw_on_twin(&mut self, reason: Error) -> Result<()> {
+        self.frames.forget_device();
+        self.scene = None;
+        self.executor = Box::new(TwinExecutor::default());
+        self.scene = Some(self.executor.upload(&self.prepared)?);
+        self.may_change_device = false;
+        self.notices.push(format!("drawing on the CPU twin from here on: {reason}"));
+        self.passed_over.push(reason);
+        Ok(())
     }
 
     /// Opens the device anew after it was lost, with the scene; everything else on it is gone.
@@ -357,6 +386,13 @@ impl Renderer {
         &self.monitor
     }
 
+    /// Why the device, or the build of kernels, that would have come first does not draw: an error for each that was passed
+    /// over. Empty if the first choice draws. [`Error::DriverCrashed`] among them is what
+    /// [`DeviceOptions::retry_crashed`] is for.
+    pub fn passed_over(&self) -> &[Error] {
+        &self.passed_over
+    }
+
     /// Things a user should know about the device, one sentence each: why it was chosen, when it was lost.
     pub fn notices(&self) -> &[String] {
         &self.notices
@@ -379,34 +415,72 @@ impl Renderer {
     }
 }
 
-/// The executor that `options` ask for, tested if nobody has tested it yet. What a user should know about the choice goes
-/// to `notices`.
+/// What draws, and how it came to that.
+struct Opened {
+    executor: Box<dyn Executor>,
+    careful: bool,
+    is_opencl: bool,
+}
+
+impl Opened {
+    fn twin() -> Self {
+        Opened { executor: Box::new(TwinExecutor::default()), careful: false, is_opencl: false }
+    }
+
+    /// What a user should know about it.
+    fn notice(&self, passed_over: &[Error]) -> Option<String> {
+        let first = passed_over.first()?;
+        Some(match (self.is_opencl, self.careful) {
+            (false, _) => format!("drawing on the CPU twin: {first}"),
+            (true, true) => format!("drawing with kernels that are built with care, which may be slower: {first}"),
+            (true, false) => format!("drawing on {}: {first}", self.executor.info().name),
+        })
+    }
+}
+
+/// The executor that `options` ask for, tested if nobody has tested it yet. Why others were not taken goes to
+/// `passed_over`.
 fn open_executor(
     scene: &PreparedScene,
     options: &DeviceOptions,
-    notices: &mut Vec<String>,
+    passed_over: &mut Vec<Error>,
     monitor: &Monitor,
-) -> Result<Box<dyn Executor>> {
-    let tested = || {
-        let mut opened = open_opencl(options)?;
-        if let Some(device) = &mut opened {
-            device.watch(monitor);
-            quick::check(device, scene.shading(), options.profile.as_ref())?;
-        }
-        Ok(opened)
+) -> Result<Opened> {
+    let (first, is_auto) = match options.device {
+        DeviceChoice::Cpu => return Ok(Opened::twin()),
+        DeviceChoice::Auto => (0, true),
+        DeviceChoice::OpenCl(index) => (index.unwrap_or(0), false),
     };
-    match tested() {
-        // A compiler that Ctrl-C ended, for one, is no reason to draw elsewhere.
-        Err(_) if monitor.check().is_err() => Err(Error::Cancelled),
-        Ok(Some(device)) => Ok(Box::new(device)),
-        Ok(None) => Ok(Box::new(TwinExecutor::default())),
-        // No device, or one that a quick self-test found wanting.
-        Err(error @ (Error::NoOpenCl { .. } | Error::SelfTest { .. } | Error::KernelBuild { .. }))
-            if options.device == DeviceChoice::Auto =>
-        {
-            notices.push(format!("drawing on the CPU twin: {error}"));
-            Ok(Box::new(TwinExecutor::default()))
+    let mut index = first;
+    loop {
+        for careful in [false, true] {
+            let tested = open_number(options, Some(index), careful).and_then(|mut device| {
+                device.watch(monitor);
+                quick::check(&mut device, scene.shading(), options.profile.as_ref())?;
+                Ok(device)
+            });
+            // A compiler that Ctrl-C ended, for one, is no reason to draw elsewhere.
+            monitor.check()?;
+            match tested {
+                Ok(device) => return Ok(Opened { executor: Box::new(device), careful, is_opencl: true }),
+                Err(error @ (Error::SelfTest { .. } | Error::KernelBuild { .. })) => passed_over.push(error),
+                // Another build of the same might end the process once more.
+                Err(error @ (Error::DriverCrashed { .. } | Error::NoOpenCl { .. })) if is_auto => {
+                    passed_over.push(error);
+                    break;
+                }
+                Err(error) => return Err(error),
+            }
         }
-        Err(error) => Err(error),
+        if !is_auto {
+            // The usual build says more.
+            return Err(passed_over.swap_remove(0));
+        }
+        index += 1;
+        // As software, the twin is as good as another device.
+        let is_next = devices(options).devices.get(index).is_some_and(|device| device.kind != "cpu");
+        if !is_next {
+            return Ok(Opened::twin());
+        }
     }
 }

@@ -11,7 +11,9 @@ use std::sync::Arc;
 use crate::device::executor::Executor;
 use crate::device::frame_memory::{FrameBuffer, FrameSizes};
 use crate::device::hooks::parity::{KernelParity, Parity};
+use crate::device::launch::Launch;
 use crate::device::opencl::executor::OpenClExecutor;
+use crate::device::opencl::markers::Marker;
 use crate::device::profiles::Profile;
 use crate::device::queue::{Hook, Queue};
 use crate::device::stage::{Kernel, LAUNCHES};
@@ -89,7 +91,8 @@ pub enum Known {
 /// Tests `device`, which is held to `profile`, unless an earlier run left its verdict.
 ///
 /// # Errors
-/// [`Error::SelfTest`] with the driver's version and the stage that failed; [`Error::KernelBuild`].
+/// [`Error::SelfTest`] with the driver's version and the stage that failed; [`Error::KernelBuild`];
+/// [`Error::DriverCrashed`] if a process ended in the compiler or in the self-test before.
 pub fn check(device: &mut OpenClExecutor, shading: Shading, profile: Option<&Profile>) -> Result<Known> {
     let profile = profile.map_or(String::new(), |profile| profile.to_json().to_string());
     let texts = device.program_texts(shading);
@@ -98,7 +101,7 @@ pub fn check(device: &mut OpenClExecutor, shading: Shading, profile: Option<&Pro
     if let Some(verdict) = kept.as_deref().and_then(|text| read_verdict(&device.info().describe(), text)) {
         return verdict.map(|()| Known::FromCache);
     }
-    let outcome = test(device, shading);
+    let outcome = device.build_usual(shading).and_then(|()| test(device, shading, &about));
     let test = match outcome {
         Ok(test) => test,
         Err(Error::LimitExceeded { what, limit, .. }) => {
@@ -136,16 +139,30 @@ fn stage_in(message: &str) -> String {
     known.map_or("calls", |(.., label)| label).into()
 }
 
-fn test(device: &mut OpenClExecutor, shading: Shading) -> Result<SelfTest> {
+/// Notes which kernel is about to run.
+struct Notes(Option<Marker>);
+
+impl Hook for Notes {
+    fn before(&mut self, _: &mut dyn Executor, launch: &Launch) -> Result<()> {
+        if let Some(marker) = &mut self.0 {
+            marker.now(&format!("running `{}` for the first time", launch.kernel.label(launch.stage)));
+        }
+        Ok(())
+    }
+}
+
+fn test(device: &mut OpenClExecutor, shading: Shading, about: &[&str]) -> Result<SelfTest> {
     let scene = prepared(SCENE, shading)?;
     let options = RenderOptions { width: WIDTH, height: HEIGHT, ..RenderOptions::default() };
+    let mut notes = Notes(device.context().guard_first_run(about)?);
     let mut checks = vec![check_layout(&device.probe()?)];
     let mut twin = TwinExecutor::imitating(device).preferring_few_launches(device.prefers_few_launches());
     let mut parity = Parity::new(device, &scene)?;
-    draw_test_frame(&mut twin, &scene, &options, false, &mut [&mut parity])?;
+    draw_test_frame(&mut twin, &scene, &options, false, &mut [&mut notes, &mut parity])?;
     checks.extend(parity.results.iter().map(check_parity));
     drop(parity);
     device.context().start_afresh()?;
+    drop(notes);
     Ok(SelfTest { device: device.info().describe(), checks })
 }
 

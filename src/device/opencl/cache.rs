@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! What is kept on disk: compiled programs, since phones take seconds to build kernels, and verdicts of self-tests. Both
-//! are made once per driver.
+//! What is kept on disk: compiled programs, since phones take seconds to build kernels; which of them do not build; and
+//! verdicts of self-tests. All are made once per driver.
 //!
 //! An entry names everything that it depends on, and carries a checksum; whatever does not fit is built anew. Entries
 //! are written aside and renamed, so that processes may race. A cache that cannot be written costs time, nothing else.
@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
 use super::context::Context;
+use super::markers::Marker;
 use crate::{Error, Result, files};
 
 /// The variable that names the cache folder.
@@ -29,8 +30,10 @@ pub(super) struct Kind {
 
 const PROGRAMS: Kind = Kind { magic: b"rarefy program 1\n", suffix: "clbin" };
 const VERDICTS: Kind = Kind { magic: b"rarefy verdict 1\n", suffix: "verdict" };
+const FAILURES: Kind = Kind { magic: b"rarefy failure 1\n", suffix: "failure" };
 
-/// Where compiled programs and verdicts of self-tests are kept.
+/// Where compiled programs and what is known of drivers are kept: which programs do not build, verdicts of self-tests, what
+/// ended the process.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub enum CacheFolder {
     /// `RAREFY_CACHE_DIR`, else `rarefy` in `XDG_CACHE_HOME`, else `.cache/rarefy` in the home folder, else nowhere. On
@@ -55,6 +58,18 @@ impl CacheFolder {
                 .or_else(|| variable("XDG_CACHE_HOME").map(|path| path.join("rarefy")))
                 .or_else(|| variable("HOME").map(|path| path.join(".cache").join("rarefy"))),
         }
+    }
+}
+
+impl CacheFolder {
+    /// Whether somebody named it, or the variable does.
+    pub(super) fn is_asked_for(&self) -> bool {
+        *self != CacheFolder::Usual || std::env::var_os(FOLDER_VARIABLE).is_some_and(|value| !value.is_empty())
+    }
+
+    /// The folder for what a driver's compiler gave; `driver_caches`: the driver keeps compiled kernels itself.
+    pub(super) fn of_programs(&self, driver_caches: bool) -> Option<PathBuf> {
+        if driver_caches && !self.is_asked_for() { None } else { self.path() }
     }
 }
 
@@ -84,13 +99,22 @@ impl Key {
     pub fn new(parts: &[&str]) -> Self {
         Key(hash(&parts.iter().map(|part| part.as_bytes()).collect::<Vec<_>>()))
     }
+
+    /// The name of its entry of this kind.
+    pub fn file_name(&self, suffix: &str) -> String {
+        format!("{:032x}.{suffix}", self.0)
+    }
 }
 
 impl Cache {
     /// Compiled programs. `driver_caches`: the driver keeps compiled kernels itself.
     pub fn programs(folder: &CacheFolder, driver_caches: bool) -> Self {
-        let asked_for = *folder != CacheFolder::Usual || std::env::var_os(FOLDER_VARIABLE).is_some();
-        Cache { folder: if driver_caches && !asked_for { None } else { folder.path() }, kind: PROGRAMS }
+        Cache { folder: folder.of_programs(driver_caches), kind: PROGRAMS }
+    }
+
+    /// Programs that do not build, each with the compiler's log.
+    pub fn failures(folder: &CacheFolder, driver_caches: bool) -> Self {
+        Cache { folder: folder.of_programs(driver_caches), kind: FAILURES }
     }
 
     /// Verdicts of self-tests: no driver keeps those.
@@ -104,7 +128,7 @@ impl Cache {
     }
 
     fn entry(&self, key: &Key) -> Option<PathBuf> {
-        Some(self.folder.as_ref()?.join(format!("{:032x}.{}", key.0, self.kind.suffix)))
+        Some(self.folder.as_ref()?.join(key.file_name(self.kind.suffix)))
     }
 
     /// The binary for `key`, if there is a sound one.
@@ -153,6 +177,15 @@ impl Context {
     /// The verdict that was kept about this device and driver, this version of the library and `about`.
     pub(crate) fn verdict(&self, about: &[&str]) -> Option<String> {
         String::from_utf8(self.verdicts.load(&self.verdict_key(about))?).ok()
+    }
+
+    /// Notes that the device runs kernels of `about` for the first time, until the result is dropped.
+    ///
+    /// # Errors
+    /// [`Error::DriverCrashed`] if a process ended when it did.
+    pub(crate) fn guard_first_run(&self, about: &[&str]) -> Result<Option<Marker>> {
+        let key = self.verdict_key(&[about, &["first run"]].concat());
+        self.markers.guard(&key, &self.info().describe(), "running kernels for the first time")
     }
 
     /// Keeps a verdict for later runs; if that fails, they come to their own.

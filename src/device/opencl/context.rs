@@ -10,10 +10,11 @@ use opencl3::context::context::create_context;
 
 use super::cache::{Cache, CacheFolder};
 use super::codes::{self, check};
-use super::discover::{DeviceInfo, DeviceKind, discover_with};
+use super::discover::{DeviceInfo, DeviceKind, discover_guarded};
 use super::faults::Faults;
 use super::handle::Handle;
 use super::limits::Limits;
+use super::markers::Markers;
 use super::slices::Planner;
 use super::timing::{Timing, Wait};
 use crate::device::profiles::{Choices, Profile};
@@ -35,8 +36,12 @@ pub struct OpenOptions {
     pub library: Option<PathBuf>,
     /// The most memory that buffers may use together, in bytes.
     pub memory_budget_bytes: Option<u64>,
-    /// Where compiled programs and verdicts of self-tests are kept.
+    /// Where compiled programs and what is known of drivers are kept.
     pub cache: CacheFolder,
+    /// Do again what ended the process at an earlier start, and build again what did not build.
+    pub retry_crashed: bool,
+    /// Programs without the compiler's optimisation and small work-groups, where the usual ones do not do.
+    pub careful: bool,
     /// For tests: the most work-items of every slice.
     pub slice_items: Option<u64>,
     /// For tests: when the device is lost.
@@ -109,6 +114,8 @@ pub struct Context {
     pub(super) shared: Arc<Shared>,
     pub(super) cache: Cache,
     pub(super) verdicts: Cache,
+    pub(super) failures: Cache,
+    pub(super) markers: Markers,
     pub(super) state: Mutex<State>,
     choices: Choices,
     options: OpenOptions,
@@ -138,7 +145,8 @@ pub fn open_with(options: &OpenOptions) -> Result<Context> {
 
 /// Opens a device for the `reopened`th time again; slices are halved each time.
 fn open_again(options: &OpenOptions, reopened: u32) -> Result<Context> {
-    let mut found = discover_with(options.library.as_deref());
+    let search = Markers::of_search(&options.cache, options.retry_crashed);
+    let mut found = discover_guarded(options.library.as_deref(), &search)?;
     let count = found.devices.len();
     if count == 0 {
         return Err(Error::NoOpenCl { tried: found.skipped });
@@ -189,6 +197,8 @@ fn open_again(options: &OpenOptions, reopened: u32) -> Result<Context> {
         }),
         cache: Cache::programs(&options.cache, driver_caches),
         verdicts: Cache::verdicts(&options.cache),
+        failures: Cache::failures(&options.cache, driver_caches),
+        markers: Markers::new(options.cache.of_programs(driver_caches), options.retry_crashed),
         state: Mutex::new(state),
         choices,
         options: options.clone(),
@@ -209,6 +219,16 @@ impl State {
 }
 
 impl Context {
+    /// Whether programs are built without optimisation, for work-groups that are small.
+    pub fn is_careful(&self) -> bool {
+        self.options.careful
+    }
+
+    /// Whether what failed or crashed before is done again.
+    pub(super) fn retries(&self) -> bool {
+        self.options.retry_crashed
+    }
+
     /// Who the device is.
     pub fn info(&self) -> &DeviceInfo {
         &self.shared.info

@@ -5,7 +5,7 @@ use std::ffi::c_void;
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
-use opencl3::device::{CL_DEVICE_TYPE_ALL, get_device_data, get_device_ids};
+use opencl3::device::{CL_DEVICE_EXTENSIONS, CL_DEVICE_TYPE_ALL, CL_DEVICE_VERSION, get_device_data, get_device_ids};
 use opencl3::platform::platform::{
     CL_PLATFORM_EXTENSIONS, CL_PLATFORM_NAME, CL_PLATFORM_PROFILE, CL_PLATFORM_VENDOR, CL_PLATFORM_VERSION,
     get_platform_data, get_platform_ids,
@@ -13,8 +13,11 @@ use opencl3::platform::platform::{
 use serde::Serialize;
 use serde_json::Value;
 
+use super::cache::Key;
 use super::limits::{Limits, parse_version};
+use super::markers::Markers;
 use super::{codes, library};
+use crate::Result;
 use crate::device::profiles::{Certainty, Choices, Entry, Profile};
 use crate::device::queries::{Kind, QUERIES, Query};
 
@@ -113,6 +116,15 @@ pub fn discover() -> Discovery {
     discover_with(None)
 }
 
+/// As [`discover_with`], with a note of it: a driver may end the process when it is asked who it is.
+pub(super) fn discover_guarded(path: Option<&Path>, markers: &Markers) -> Result<Discovery> {
+    let key = Key::new(&["discovery", &path.unwrap_or(Path::new("")).to_string_lossy(), env!("CARGO_PKG_VERSION")]);
+    let marker = markers.guard(&key, "OpenCL", "loading the OpenCL library and asking for devices")?;
+    let found = discover_with(path);
+    drop(marker);
+    Ok(found)
+}
+
 /// As [`discover`]; tries the library at `path` first. Only the first search of a process can choose the library.
 pub(crate) fn discover_with(path: Option<&Path>) -> Discovery {
     // Drivers set their devices up at the first query; PoCL 3.1 crashes if another thread asks meanwhile.
@@ -201,8 +213,12 @@ fn unfit(profile: &Profile) -> Option<String> {
 
 fn examine(platform: *mut c_void, platform_name: &str, id: *mut c_void) -> DeviceFound {
     let mut profile = Profile::empty("device", "");
+    // Who it is comes first: some drivers end the process when they are asked what their version does not have.
+    let words = |number| get_device_data(id, number).map(|bytes| text(&bytes)).unwrap_or_default();
+    let (version, extensions) = (words(CL_DEVICE_VERSION), words(CL_DEVICE_EXTENSIONS));
     for query in QUERIES {
         let value = match query.device {
+            Some(_) if !query.may_be_asked(parse_version(&version), &extensions) => None,
             Some(number) => get_device_data(id, number).ok().and_then(|bytes| decode(query, &bytes)),
             None => platform_value(platform, query.key),
         };

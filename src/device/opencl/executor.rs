@@ -25,6 +25,8 @@ use crate::scene::MAX_LIGHTS;
 const SCAN_GROUP: usize = 256;
 /// Work-items of a one-dimensional launch's work-group.
 const LIST_GROUP: usize = 64;
+/// Most work-items of any work-group where kernels are built with care.
+const CAREFUL_GROUP: usize = 32;
 
 /// Runs kernels on an OpenCL device.
 pub struct OpenClExecutor {
@@ -117,7 +119,10 @@ impl OpenClExecutor {
     /// An executor on the device behind `context`. `strict` kernels equal the CPU twin bit for bit; `mutation` breaks
     /// kernels on purpose, for tests and for the self-test's negative control.
     pub fn new(context: Context, strict: bool, mutation: Option<Mutation>) -> Self {
-        let (scan_group, traversal) = (scan_group(context.limits()), context.choices().traversal());
+        let (mut scan_group, traversal) = (scan_group(context.limits()), context.choices().traversal());
+        if context.is_careful() {
+            scan_group = scan_group.min(CAREFUL_GROUP as u32);
+        }
         let mut executor = OpenClExecutor {
             context,
             is_lost: false,
@@ -156,7 +161,8 @@ impl OpenClExecutor {
         let programs = Program::ALL.map(|program| kernels::program_source(program, self.mutation.as_ref()));
         let probe = kernels::assemble("probe.cl", self.mutation.as_ref());
         let flavour = self.flavour(shading, false);
-        format!("{} {flavour:?} {probe} {}", layout::build_options(flavour), programs.concat())
+        let careful = if self.context.is_careful() { "careful " } else { "" };
+        format!("{careful}{} {flavour:?} {probe} {}", layout::build_options(flavour), programs.concat())
     }
 
     /// Sizes and offsets of the shared structs as this device's compiler lays them out, in the order of
@@ -181,6 +187,18 @@ impl OpenClExecutor {
             barrier: false,
         })?;
         self.context.read(&out, 0..len)
+    }
+
+    /// Builds the programs that a usual frame needs, each noted by itself while its compiler runs.
+    ///
+    /// # Errors
+    /// [`crate::Error::KernelBuild`]; [`crate::Error::DriverCrashed`] if a process ended in its compiler before.
+    pub(crate) fn build_usual(&mut self, shading: Shading) -> Result<()> {
+        let flavour = self.flavour(shading, false);
+        for kernel in [Kernel::Trace, Kernel::Check, Kernel::PackCount, Kernel::CorrectMark] {
+            self.build(kernel, flavour)?;
+        }
+        if self.prefers_few_launches() { self.build(Kernel::CorrectTail, flavour) } else { Ok(()) }
     }
 
     /// The device.
@@ -228,6 +246,14 @@ pub fn work_group(choices: &Choices, stage: Stage, kernel: Kernel) -> Option<[us
         Items::List | Items::Chunks | Items::OneGroup => Some([LIST_GROUP, 1]),
         Items::Groups => None,
     }
+}
+
+/// The work-group that one gets from `wanted` by halving its longer side until it has at most `most` items.
+fn at_most(most: usize, [mut width, mut height]: [usize; 2]) -> [usize; 2] {
+    while width.saturating_mul(height) > most.max(1) {
+        if width > height { width = width.div_ceil(2) } else { height = height.div_ceil(2) }
+    }
+    [width, height]
 }
 
 fn previous_power_of_two(n: usize) -> usize {
@@ -327,6 +353,7 @@ impl Executor for OpenClExecutor {
         let local = match work_group(self.context.choices(), stage, kernel) {
             // Its scratch memory is that of a scan.
             Some([width, _]) if items == Items::OneGroup => fit([width.min(step.scan_group as usize), 1]),
+            Some(wanted) if self.context.is_careful() => fit(at_most(CAREFUL_GROUP, wanted)),
             Some(wanted) => fit(wanted),
             // The scan's levels depend on the group: it is not fitted but checked.
             None => [step.scan_group as usize, 1],
@@ -398,5 +425,18 @@ impl Executor for OpenClExecutor {
         self.is_lost = false;
         let slices = self.context.slice_ms().map_or("whole".into(), |ms| format!("of {ms:.1} ms"));
         Ok(format!("launches are {slices} now"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::at_most;
+
+    #[test]
+    fn careful_work_groups_are_small() {
+        assert_eq!(at_most(32, [8, 8]), [8, 4]);
+        assert_eq!(at_most(32, [64, 1]), [32, 1]);
+        assert_eq!(at_most(32, [4, 4]), [4, 4]);
+        assert_eq!(at_most(0, [3, 5]), [1, 1]);
     }
 }

@@ -67,8 +67,15 @@ fn search(preferred: Option<&Path>) -> Search {
             Err(reason) => refused.push((path, reason)),
         }
     }
+    if cfg!(target_os = "android") {
+        refused.push(("AndroidManifest.xml".into(), MANIFEST.into()));
+    }
     Search { accepted: None, refused }
 }
+
+/// What an app can do where the system hides a library that is there.
+const MANIFEST: &str = "from Android 12 on a vendor's library is found only if the app names it in <uses-native-library> \
+                        (libOpenCL.so, libOpenCL-pixel.so, libOpenCL-car.so, each with required=\"false\")";
 
 /// Opens `path` and looks for OpenCL's first function in it.
 fn trial(path: &str) -> std::result::Result<(), String> {
@@ -81,12 +88,20 @@ fn trial(path: &str) -> std::result::Result<(), String> {
     })?;
     // SAFETY: the symbol is only tested for presence, through a pointer that is never called or read.
     let symbol = unsafe { library.symbol::<*const u8>("clGetPlatformIDs") };
-    if symbol.is_err() {
-        return Err("opens, but has no function clGetPlatformIDs".into());
-    }
+    let symbol_missing = symbol.is_err();
+    // SAFETY: as above.
+    let by_pointer = symbol_missing && unsafe { library.symbol::<*const u8>("loadOpenCLPointer") }.is_ok();
     // Vendor libraries start threads and register exit handlers: closing them crashes later.
     std::mem::forget(library);
-    Ok(())
+    match (symbol_missing, by_pointer) {
+        (false, _) => Ok(()),
+        (true, true) => {
+            Err("is the OpenCL of Pixel phones, which gives its functions through loadOpenCLPointer only; \
+                             Rarefy does not use it"
+                .into())
+        }
+        (true, false) => Err("opens, but has no function clGetPlatformIDs".into()),
+    }
 }
 
 /// What the binding opens when it is told nothing.
@@ -112,12 +127,26 @@ fn candidates() -> Vec<String> {
 /// Names, then absolute paths of the running ABI only: a library of the other ABI could never be loaded.
 fn android_candidates(wide: bool) -> Vec<String> {
     let folder = if wide { "lib64" } else { "lib" };
-    let mut paths: Vec<String> =
-        ["libOpenCL.so", "libOpenCL.so.1", "libOpenCL-pixel.so", "libGLES_mali.so", "libmali.so", "libPVROCL.so"]
-            .map(str::to_string)
-            .to_vec();
+    let mut paths: Vec<String> = [
+        "libOpenCL.so",
+        "libOpenCL.so.1",
+        "libOpenCL-pixel.so",
+        "libOpenCL-car.so",
+        "libGLES_mali.so",
+        "libmali.so",
+        "libPVROCL.so",
+    ]
+    .map(str::to_string)
+    .to_vec();
     for root in ["/vendor", "/system/vendor", "/system"] {
-        for file in ["libOpenCL.so", "egl/libGLES_mali.so", "libmali.so", "libPVROCL.so"] {
+        for file in [
+            "libOpenCL.so",
+            "libOpenCL-pixel.so",
+            "libOpenCL-car.so",
+            "egl/libGLES_mali.so",
+            "libmali.so",
+            "libPVROCL.so",
+        ] {
             paths.push(format!("{root}/{folder}/{file}"));
         }
     }
@@ -144,5 +173,8 @@ mod tests {
         let wide = android_candidates(true);
         assert!(wide.iter().filter(|path| path.starts_with('/')).all(|path| path.contains("/lib64/")));
         assert_eq!(wide[0], "libOpenCL.so");
+        for car_or_pixel in ["libOpenCL-pixel.so", "libOpenCL-car.so"] {
+            assert!(wide.iter().any(|path| path == car_or_pixel), "{car_or_pixel}");
+        }
     }
 }

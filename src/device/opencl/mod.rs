@@ -17,7 +17,9 @@ mod handle;
 mod launch;
 pub mod library;
 mod limits;
+pub mod markers;
 mod program;
+mod report;
 mod slices;
 mod timing;
 
@@ -29,5 +31,6 @@ pub use faults::Faults;
 pub use launch::{Arg, DeviceLaunch};
 pub use limits::Limits;
 pub use program::{Kernel, Program, ProgramSource};
+pub use report::{DeviceReport, DeviceSummary, RefusedLibrary, report};
 
 pub use crate::device::profiles::Profile;

@@ -2,12 +2,13 @@
 //! Programs and their kernels: built from source or taken from the cache.
 
 use std::ffi::{CString, c_void};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 
 use opencl3::kernel::{
-    CL_KERNEL_ARG_ADDRESS_CONSTANT, CL_KERNEL_ARG_ADDRESS_QUALIFIER, CL_KERNEL_LOCAL_MEM_SIZE, CL_KERNEL_NUM_ARGS,
-    CL_KERNEL_PREFERRED_WORK_GROUP_SIZE_MULTIPLE, CL_KERNEL_PRIVATE_MEM_SIZE, CL_KERNEL_WORK_GROUP_SIZE, create_kernel,
-    get_kernel_arg_data, get_kernel_data, get_kernel_work_group_data,
+    CL_KERNEL_ARG_ADDRESS_CONSTANT, CL_KERNEL_ARG_ADDRESS_QUALIFIER, CL_KERNEL_FUNCTION_NAME, CL_KERNEL_LOCAL_MEM_SIZE,
+    CL_KERNEL_NUM_ARGS, CL_KERNEL_PREFERRED_WORK_GROUP_SIZE_MULTIPLE, CL_KERNEL_PRIVATE_MEM_SIZE,
+    CL_KERNEL_WORK_GROUP_SIZE, create_kernel, create_kernels_in_program, get_kernel_arg_data, get_kernel_data,
+    get_kernel_work_group_data,
 };
 use opencl3::program::{
     CL_PROGRAM_BINARIES, CL_PROGRAM_BUILD_LOG, build_program, create_program_with_binary, create_program_with_source,
@@ -16,7 +17,7 @@ use opencl3::program::{
 
 use super::cache::Key;
 use super::codes::{self, check};
-use super::context::{Context, Shared};
+use super::context::{Context, Shared, lock};
 use super::discover::text;
 use super::handle::Handle;
 use super::{build_log, codes::BUILD_PROGRAM_FAILURE};
@@ -24,6 +25,9 @@ use crate::{Error, Result};
 
 /// Options that every program is built with. Argument info is for the check of `constant` arguments.
 const ALWAYS: &str = "-cl-std=CL1.2 -Werror -cl-kernel-arg-info";
+
+/// What a careful build has besides.
+const CAREFUL: &str = "-cl-opt-disable";
 
 /// The text of a program.
 #[derive(Debug, Clone, Copy)]
@@ -42,6 +46,8 @@ pub struct Program {
     shared: Arc<Shared>,
     name: String,
     from_cache: bool,
+    /// Its kernels with their names, until they are asked for.
+    created: Mutex<Vec<(String, Handle)>>,
 }
 
 /// A kernel of a program.
@@ -59,10 +65,12 @@ pub struct Kernel {
 
 impl Context {
     /// Builds a program, or takes it from the cache if the same source was built with the same options for this device
-    /// and driver before.
+    /// and driver before. Kernels are created at once: some drivers compile only then, and a binary that is taken before
+    /// is of no use.
     ///
-    /// A source that does not compile is [`Error::KernelBuild`] with kernel files and lines; one that switches on an
-    /// extension that the device or profile lacks is [`Error::LimitExceeded`].
+    /// A source that does not compile is [`Error::KernelBuild`] with kernel files and lines, from then on without asking
+    /// this driver again; one that switches on an extension that the device or profile lacks is
+    /// [`Error::LimitExceeded`]. [`Error::DriverCrashed`] if a process ended in the compiler before.
     pub fn program(&self, source: &ProgramSource) -> Result<Program> {
         let what = format!("program `{}`", source.name);
         if source.options.contains("-cl-std") {
@@ -72,7 +80,8 @@ impl Context {
         for extension in switched_on(source.source) {
             self.limits().check_extension(&what, extension)?;
         }
-        let options = format!("{ALWAYS} {}", source.options);
+        let careful = if self.is_careful() { CAREFUL } else { "" };
+        let options = format!("{ALWAYS} {} {careful}", source.options);
         let info = self.info();
         let key = Key::new(&[
             &info.platform,
@@ -85,58 +94,87 @@ impl Context {
         ]);
         let c_options =
             CString::new(options).map_err(|_| Error::argument(&what, "its options contain a NUL character"))?;
-        let make = |program, from_cache| Program {
+        let make = |(program, created), from_cache| Program {
             program,
             shared: self.shared.clone(),
             name: source.name.to_string(),
             from_cache,
+            created: Mutex::new(created),
         };
+        let kept = if self.retries() { None } else { self.failures.load(&key) };
+        if let Some(log) = kept {
+            let log = format!("as an earlier start found:\n{}", String::from_utf8_lossy(&log));
+            return Err(self.build_error(source, log));
+        }
+        let work = format!("building program `{}`", source.name);
+        let marker = self.markers.guard(&key, &info.describe(), &work)?;
         if let Some(binary) = self.cache.load(&key) {
             match self.build_binary(&binary, &c_options) {
-                Ok(program) => return Ok(make(program, true)),
+                Ok(built) => return Ok(make(built, true)),
                 Err(code) => {
                     log::info!("{what}: the driver refuses its cached binary ({}), built anew", codes::name(code));
                     self.cache.remove(&key);
                 }
             }
         }
-        let program = self.build_source(source, &c_options).map_err(|error| self.unless_cancelled(error))?;
+        let built = self.build_source(source, &c_options).map_err(|error| self.unless_cancelled(error));
+        drop(marker);
+        if let Err(Error::KernelBuild { log, .. }) = &built {
+            self.failures.store(&key, log.as_bytes());
+        }
+        let built = built?;
+        self.failures.remove(&key);
         if self.cache.is_on()
-            && let Some(binary) = binary(&program)
+            && let Some(binary) = binary(&built.0)
         {
             self.cache.store(&key, &binary);
         }
-        Ok(make(program, false))
+        Ok(make(built, false))
     }
 
-    fn build_binary(&self, binary: &[u8], options: &CString) -> std::result::Result<Handle, i32> {
+    fn build_error(&self, source: &ProgramSource, log: String) -> Error {
+        Error::KernelBuild { program: source.name.to_string(), device: self.info().describe(), log }
+    }
+
+    fn build_binary(&self, binary: &[u8], options: &CString) -> std::result::Result<Built, i32> {
         let device = self.shared.device.0;
         // SAFETY: the context holds this device, and exactly one binary is given.
         let raw = unsafe { create_program_with_binary(self.shared.context.raw(), &[device], &[binary]) }?;
         let program = Handle::program(raw);
         build_program(program.raw(), &[device], options, None, std::ptr::null_mut())?;
-        Ok(program)
+        let created = create_kernels(&program)?;
+        Ok((program, created))
     }
 
-    fn build_source(&self, source: &ProgramSource, options: &CString) -> Result<Handle> {
+    fn build_source(&self, source: &ProgramSource, options: &CString) -> Result<Built> {
         let device = self.shared.device.0;
         // One text only: the binding takes an array of Rust strings for an array of C pointers, which holds for one.
         let raw = create_program_with_source(self.shared.context.raw(), &[source.source]);
         let program = Handle::program(check("clCreateProgramWithSource", raw)?);
-        match build_program(program.raw(), &[device], options, None, std::ptr::null_mut()) {
-            Ok(()) => Ok(program),
-            Err(BUILD_PROGRAM_FAILURE) => {
-                let log = get_program_build_data(program.raw(), device, CL_PROGRAM_BUILD_LOG);
-                let log = log.map(|log| text(&log)).unwrap_or_default();
-                Err(Error::KernelBuild {
-                    program: source.name.to_string(),
-                    device: self.info().describe(),
-                    log: build_log::report(&log, source.source),
-                })
+        let failed = |call: &str, code| {
+            let error = codes::error(format!("{call} of `{}`", source.name), code);
+            // A device that is gone says nothing about the program.
+            if codes::is_loss(&error) {
+                return error;
             }
-            Err(code) => Err(codes::error(format!("clBuildProgram of `{}`", source.name), code)),
-        }
+            let log = get_program_build_data(program.raw(), device, CL_PROGRAM_BUILD_LOG);
+            let log = build_log::report(&log.map(|log| text(&log)).unwrap_or_default(), source.source);
+            let log = if code == BUILD_PROGRAM_FAILURE { log } else { format!("{error}\n{log}") };
+            self.build_error(source, log)
+        };
+        build_program(program.raw(), &[device], options, None, std::ptr::null_mut())
+            .map_err(|code| failed("clBuildProgram", code))?;
+        let created = create_kernels(&program).map_err(|code| failed("clCreateKernelsInProgram", code))?;
+        Ok((program, created))
     }
+}
+
+/// A program with its kernels and their names.
+type Built = (Handle, Vec<(String, Handle)>);
+
+fn create_kernels(program: &Handle) -> std::result::Result<Vec<(String, Handle)>, i32> {
+    let kernels = create_kernels_in_program(program.raw())?.into_iter().map(Handle::kernel);
+    kernels.map(|kernel| Ok((text(&get_kernel_data(kernel.raw(), CL_KERNEL_FUNCTION_NAME)?), kernel))).collect()
 }
 
 /// The compiled form of a program of one device, if the driver gives it out.
@@ -174,8 +212,16 @@ impl Program {
         let call = || format!("clCreateKernel of `{name}` in `{}`", self.name);
         // CL_INVALID_KERNEL_NAME
         let c_name = CString::new(name).map_err(|_| codes::error(call(), -46))?;
-        let raw = create_kernel(self.program.raw(), &c_name).map_err(|code| codes::error(call(), code))?;
-        let kernel = Handle::kernel(raw);
+        let created = {
+            let mut created = lock(&self.created);
+            created.iter().position(|(of, _)| of == name).map(|at| created.swap_remove(at).1)
+        };
+        let kernel = match created {
+            Some(kernel) => kernel,
+            None => {
+                Handle::kernel(create_kernel(self.program.raw(), &c_name).map_err(|code| codes::error(call(), code))?)
+            }
+        };
         let device = self.shared.device.0;
         let group = |query: u32| get_kernel_work_group_data(kernel.raw(), device, query).ok().and_then(number);
         let arguments = get_kernel_data(kernel.raw(), CL_KERNEL_NUM_ARGS).ok().and_then(number);
