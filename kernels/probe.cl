@@ -61,10 +61,10 @@ static uint probe_step(__global uint *out, uint n) {
   AT(tests);
   AT(flags);
   AT(scan_group);
-  AT(lenient_tests);
   AT(t_visible);
   AT(list_end);
   AT(pixel_class);
+  AT(pad0);
   return n;
 }
 

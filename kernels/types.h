@@ -67,10 +67,10 @@ typedef struct {
   uint tests;           // bit i set: test i is on
   uint flags;           // STEP_*
   uint scan_group;      // work-items of a scan's work-group, a power of two
-  uint lenient_tests;   // FAIL_* bits of the tests that count only where the references look different
-  uint t_visible;       // smallest difference of a channel of 0..255 that is treated as visible; 0: all pixels differ
+  uint t_visible;       // correct: smallest difference of a channel of 0..255 treated as visible; 0: all pixels differ
   uint list_end;        // scatter, correct_tail: the first list entry that may not be written
   uint pixel_class;     // trace: what its pixels become; CLASS_BASE: those of the grid, another CLASS_*: those of the list
+  uint pad0;
 } StepParams;
 
 // One light; position.w and intensity.w are unused.

@@ -53,8 +53,6 @@ settings! {
     Textures = "method.checks.textures",
     /// How GC compares reflected colours.
     GcolSpace = "method.checks.gcol_space",
-    /// From which visible difference on SH counts.
-    TShadow = "method.checks.t_shadow",
     /// Where interpolated pixels lie.
     Interpolation = "method.interpolation",
     /// What post-correction compares.

@@ -61,8 +61,6 @@ fn set_rules(method: &mut Method, thin: bool, gaps: bool) {
 
 fn tables() -> Vec<(&'static str, Vec<Variant>)> {
     let compare = |label: &str, compared| ours(label, |m| m.correction = m.correction.comparing(compared));
-    let shadow = |t: u8| ours(&format!("`--t-shadow {t}`"), |m| m.checks.t_shadow = t);
-    let fast_shadow = |t: u8| fast(&format!("`--method fast --t-shadow {t}`"), |m| m.checks.t_shadow = t);
     let conv = |t: f32| ours(&format!("`--t-conv {t}`"), |m| m.checks.fine.t_conv = t);
     let gcol = |t: f32| ours(&format!("display, `--t-gcol {t}`"), |m| m.checks.fine.t_gcol = t);
     let Compared::All { t_norm, t_gcol, .. } = Compared::VISIBLE else { unreachable!() };
@@ -76,8 +74,6 @@ fn tables() -> Vec<(&'static str, Vec<Variant>)> {
     equal.extend(factors.iter().map(|&f| scaled("ours", Method::balanced(), f)));
     vec![
         ("presets", Preset::ALL.map(|p| (p.to_string(), p.into())).into()),
-        ("fast-shadows", [0, 4, 8, 12].map(fast_shadow).into()),
-        ("shadows", [0, 4, 8, 12].map(shadow).into()),
         ("fast-scaled", [1.0, 1.5, 2.0].map(|factor| scaled("fast", Method::fast(), factor)).into()),
         ("paper", vec![ours("the paper's tolerances in our rules", |m| m.checks.fine = Tolerances::PAPER)]),
         (

@@ -279,7 +279,7 @@ pub fn twin_renderer(scene: Scene) -> Renderer {
 /// The given mode and size with the paper's tolerances at all levels and without correction.
 pub fn options(mode: Mode, width: u32, height: u32, block: u32) -> RenderOptions {
     let method = Method::default();
-    let checks = Checks { second_pairs: false, textures: TextureRule::Border, t_shadow: 0, ..method.checks };
+    let checks = Checks { second_pairs: false, textures: TextureRule::Border, ..method.checks };
     let checks = checks.at_all_levels(Tolerances::PAPER);
     let method = Method { block, checks, correction: Correction::Off, ..method };
     RenderOptions { width, height, mode, method, ..RenderOptions::default() }

@@ -234,7 +234,7 @@ fn bad_input_is_one_clear_error_and_no_file() {
         ("render wall --profile no/such.json", &["no/such.json"]),
         ("render wall --device gpu", &["gpu", "opencl:N"]),
         ("render wall --method ours", &["--method", "ours", "balanced, fast or paper"]),
-        ("render wall --t-shadow 256", &["--t-shadow", "256", "255"]),
+        ("render wall --correction-t-visible 256", &["--correction-t-visible", "256", "255"]),
         ("render wall --t-pos 0.1,wide", &["--t-pos", "wide"]),
         ("render wall --correction both", &["--correction", "both", "object+shadow", "off"]),
         ("render wall --correction-t-norm nan", &["--correction-t-norm", "NaN", "-1 to 2"]),

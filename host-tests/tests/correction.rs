@@ -522,10 +522,10 @@ const NO_STEP: StepParams = StepParams {
     tests: FailMask::empty(),
     flags: StepFlags::empty(),
     scan_group: 0,
-    lenient_tests: FailMask::empty(),
     t_visible: 0,
     list_end: 0,
     pixel_class: CLASS_CORRECTED,
+    pad0: 0,
 };
 
 #[test]

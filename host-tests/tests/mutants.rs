@@ -65,11 +65,7 @@ impl Shot {
             Shot::Rods | Shot::RodsSwept | Shot::RodsInBands => (options.width, options.height) = (100, 75),
             Shot::Strictest => options.method.checks.fine.t_pos = 0.0,
             // Large enough that smooth glass, slopes and faint shadows are interpolated too.
-            // Shadows that count where they are seen are drawn here alone.
-            Shot::Zoo => {
-                (options.width, options.height, options.depth) = (180, 136, 3);
-                options.method.checks.t_shadow = 12;
-            }
+            Shot::Zoo => (options.width, options.height, options.depth) = (180, 136, 3),
             Shot::Dashes | Shot::DashesInBands => (options.width, options.height) = (64, 64),
             Shot::Room | Shot::ZooShort | Shot::ZooStackless => {}
             Shot::Paper => options.method = Method::paper(),
@@ -320,8 +316,7 @@ const SIMILARITY: &[Mutant] = &[
     ("common/similarity.clh", "a->shadow_bits != b->shadow_bits", "(a->shadow_bits ^ b->shadow_bits) > 1u", Shot::Zoo, STEP2A),
     ("common/similarity.clh", "<= step->t_gcol", "<= 8.0f * step->t_gcol", Shot::Zoo, STEP3A),
     ("common/attributes.clh", "!(flags & STEP_GCOL_LINEAR)", "(flags & STEP_GCOL_LINEAR)", Shot::Zoo, STEP2A),
-    ("common/similarity.clh", "(mask & ~step->lenient_tests)", "mask", Shot::Zoo, STEP3A),
-    ("common/attributes.clh", "(p > q ? p - q : q - p) >= t_visible", "(p > q ? p - q : 0u) >= t_visible", Shot::Zoo, STEP3A),
+    ("common/attributes.clh", "(p > q ? p - q : q - p) >= t_visible", "(p > q ? p - q : 0u) >= t_visible", Shot::Zoo, MARK),
     ("common/attributes.clh", "(step->flags & STEP_COMPARE_SHADING)", "(step->flags & STEP_GCOL_LINEAR)", Shot::Zoo, MARK),
     ("common/similarity.clh", "return min2(e, 1.0f - e)", "return e", Shot::Room, STEP2A),
     ("common/similarity.clh", "a - b > 0.5f ? b + 1.0f", "a - b > 0.5f ? b", Shot::Room, STEP3A),
@@ -330,7 +325,7 @@ const SIMILARITY: &[Mutant] = &[
     ("common/similarity.clh", "k < 3u", "k < 1u", Shot::Zoo, STEP3A),
     ("common/similarity.clh", "k == 1u ? d : 0u - d", "d", Shot::Zoo, STEP3A),
     ("common/similarity.clh", "*b = q;", "", Shot::Zoo, STEP3A),
-    ("common/similarity.clh", "step, b, &p, color_b, color_p)", "step, a, &p, color_a, color_p)", Shot::Zoo, STEP3A),
+    ("common/similarity.clh", "step, b, &p)", "step, a, &p)", Shot::Zoo, STEP3A),
     ("common/similarity.clh", "wa = zb / (za + zb)", "wa = za / (za + zb)", Shot::Zoo, STEP3A),
     ("common/similarity.clh", "m.normal = normalize3(a->normal * wa + b->normal * wb)", "m.normal = a->normal * wa + b->normal * wb", Shot::Zoo, STEP2A),
     ("common/similarity.clh", "m.gcol = a->gcol * wa + b->gcol * wb", "m.gcol = a->gcol", Shot::Zoo, STEP3A),

@@ -78,7 +78,6 @@ fn method(random: &mut Random) -> Method {
             coarse: tolerances(random),
             textures: any(random, &TextureRule::ALL),
             gcol_space: any(random, &GcolSpace::ALL),
-            t_shadow: any(random, &[0, 12, 255]),
             second_pairs: flip(random),
         },
         interpolation: any(random, &Interpolation::ALL),

@@ -56,7 +56,6 @@ fn differing(results: &[KernelParity]) -> Vec<&KernelParity> {
 fn combinations(width: u32, height: u32) -> Vec<RenderOptions> {
     let mut all = vec![full(&sized(width, height)), sized(width, height)];
     all.push(RenderOptions { method: Method::paper(), ..sized(width, height) });
-    all.push(with(&sized(width, height), |method| method.checks.t_shadow = 12));
     for block in [2, 4] {
         for correction in corrections() {
             for interpolation in Interpolation::ALL {

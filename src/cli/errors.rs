@@ -21,7 +21,6 @@ fn option(setting: Setting) -> Option<&'static str> {
         Setting::TGcol => "--t-gcol",
         Setting::Textures => "--textures",
         Setting::GcolSpace => "--gcol-space",
-        Setting::TShadow => "--t-shadow",
         Setting::Interpolation => "--interpolation",
         Setting::Correction => "--correction",
         Setting::CorrectionSpread => "--correction-method",

@@ -61,9 +61,6 @@ pub struct MethodArgs {
     /// GC: largest distance of the reflected colours.
     #[arg(long, value_parser = levels, allow_hyphen_values = true, value_name = "DISTANCE")]
     pub t_gcol: Option<Levels>,
-    /// SH: from which difference in a channel of 0 to 255 of the shown colours on different shadow bits count; 0: always.
-    #[arg(long, value_name = "0..255")]
-    pub t_shadow: Option<u8>,
     /// Tests to switch off, such as gc,tx.
     #[arg(long, value_parser = named::<Test>, value_delimiter = ',', value_name = "TEST,...")]
     pub disable_test: Vec<Test>,
@@ -130,7 +127,6 @@ impl MethodArgs {
             set(&mut tolerances.t_tex, self.t_tex.map(level));
             set(&mut tolerances.t_gcol, self.t_gcol.map(level));
         }
-        set(&mut checks.t_shadow, self.t_shadow);
         set(&mut checks.textures, self.textures);
         set(&mut checks.gcol_space, self.gcol_space);
         set(&mut checks.second_pairs, self.second_pairs);

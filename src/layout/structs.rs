@@ -61,10 +61,10 @@ pub struct StepParams {
     pub tests: FailMask,
     pub flags: StepFlags,
     pub scan_group: u32,
-    pub lenient_tests: FailMask,
     pub t_visible: u32,
     pub list_end: u32,
     pub pixel_class: u32,
+    pub pad0: u32,
 }
 const _: () = assert!(size_of::<StepParams>() == 96);
 
@@ -188,10 +188,10 @@ pub fn struct_layout() -> Vec<LayoutEntry> {
             tests,
             flags,
             scan_group,
-            lenient_tests,
             t_visible,
             list_end,
             pixel_class,
+            pad0,
         }),
         &layout_of!(Light { position, intensity }),
         &layout_of!(Material {

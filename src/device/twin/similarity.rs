@@ -3,7 +3,7 @@
 
 use super::FrameBuffers;
 use super::planes::{
-    Attributes, color_index, gcol_distance, load_attributes, look_different, plane_index, store_attributes, store_work,
+    Attributes, color_index, gcol_distance, load_attributes, plane_index, store_attributes, store_work,
 };
 use super::scene_args::{SceneArgs, Work, xyz};
 use super::shade::{ShadePoint, shade_local, srgb_word};
@@ -100,33 +100,23 @@ pub fn interpolate(frame: &FrameParams, step: &StepParams, a: &Attributes, b: &A
     }
 }
 
-/// A neighbour: its attributes and its shown colour.
-type Neighbour = (Attributes, u32);
-
-/// The fail mask of a pair, but an empty one where only lenient tests fail and the two look alike.
-fn counted_failures(scene: &SceneArgs, step: &StepParams, a: &Neighbour, b: &Neighbour) -> FailMask {
-    let mask = similarity_checks(scene, step, &a.0, &b.0);
-    let counts = !step.lenient_tests.contains(mask) || look_different(a.1, b.1, step.t_visible);
-    if counts { mask } else { FailMask::empty() }
-}
-
 /// Another opposite pair around `(x, y)` that is alike, and alike with `a` or `b`, the upper and lower neighbours.
 fn find_other_pair(
     scene: &SceneArgs,
     step: &StepParams,
     (x, y): (u32, u32),
-    (a, b): (&Neighbour, &Neighbour),
-    neighbour: &dyn Fn(u32, u32) -> Neighbour,
+    (a, b): (&Attributes, &Attributes),
+    neighbour: &dyn Fn(u32, u32) -> Attributes,
 ) -> Option<(Attributes, Attributes)> {
     let d = step.reference_dy;
     if x + d >= scene.frame.width {
         return None;
     }
-    let alike = |a: &Neighbour, b: &Neighbour| counted_failures(scene, step, a, b).is_empty();
+    let alike = |a: &Attributes, b: &Attributes| similarity_checks(scene, step, a, b).is_empty();
     let pairs = [(y, y), (y - d, y + d), (y + d, y - d)].into_iter().map(|(left, right)| {
         let (p, q) = (neighbour(x - d, left), neighbour(x + d, right));
         let found = alike(&p, &q) && (alike(a, &p) && alike(a, &q) || alike(b, &p) && alike(b, &q));
-        found.then_some((p.0, q.0))
+        found.then_some((p, q))
     });
     pairs.flatten().next()
 }
@@ -147,21 +137,19 @@ pub fn check_pixel(scene: &SceneArgs, step: &StepParams, x: u32, y: u32, out: &F
         planes.set(PLANE_CLASS * pitch + at, CLASS_PENDING);
         return;
     }
-    let neighbour = |x: u32, y: u32| {
-        (load_attributes(planes, pitch, plane_index(frame, x, y)), out.color.get(color_index(frame, x, y)))
-    };
+    let neighbour = |x: u32, y: u32| load_attributes(planes, pitch, plane_index(frame, x, y));
     let a = neighbour(x - step.reference_dx, y - step.reference_dy);
     let b = neighbour(x + step.reference_dx, y + step.reference_dy);
-    let mask = counted_failures(scene, step, &a, &b);
+    let mask = similarity_checks(scene, step, &a, &b);
     let pair = if mask.is_empty() {
-        Some((a.0, b.0))
+        Some((a, b))
     } else if step.flags.contains(StepFlags::OTHER_PAIRS) {
         find_other_pair(scene, step, (x, y), (&a, &b), &neighbour)
     } else {
         None
     };
     let Some((a, b)) = pair else {
-        let secondary = sends_secondary(scene, &a.0) || sends_secondary(scene, &b.0);
+        let secondary = sends_secondary(scene, &a) || sends_secondary(scene, &b);
         let secondary = if secondary { CLASS_SECONDARY } else { 0 };
         planes.set(PLANE_CLASS * pitch + at, CLASS_PENDING | mask.bits() | secondary);
         return;

@@ -183,9 +183,6 @@ pub struct Checks {
     pub textures: TextureRule,
     /// How GC compares reflected colours.
     pub gcol_space: GcolSpace,
-    /// SH: smallest 8-bit difference in a channel of the references' shown colours from which on different shadow bits
-    /// count; 0: they always count. Beyond the paper.
-    pub t_shadow: u8,
     /// A pixel of step III with eight known neighbours whose upper and lower one fail may lie between two others; beyond
     /// the paper.
     pub second_pairs: bool,

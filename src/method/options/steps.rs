@@ -13,8 +13,6 @@ impl Method {
     pub(crate) fn check_params(&self, step: StepParams, is_finest: bool, extent: f32) -> StepParams {
         let checks = &self.checks;
         let tolerances = if is_finest { &checks.fine } else { &checks.coarse };
-        // The strictest tolerances trace every pixel, whatever it looks like.
-        let is_lenient = checks.t_shadow > 0 && tolerances.t_pos > 0.0;
         StepParams {
             t_pos: tolerances.t_pos * extent,
             t_norm: tolerances.t_norm,
@@ -22,8 +20,6 @@ impl Method {
             t_tex: tolerances.t_tex,
             t_gcol: tolerances.t_gcol,
             tests: checks.tests.fail_mask(),
-            lenient_tests: if is_lenient { FailMask::SH } else { FailMask::empty() },
-            t_visible: checks.t_shadow.into(),
             flags: StepFlags::STORE
                 | flag(self.interpolation == Interpolation::Perspective, StepFlags::PERSPECTIVE)
                 | flag(checks.gcol_space == GcolSpace::Linear, StepFlags::GCOL_LINEAR)
