@@ -75,6 +75,8 @@ settings! {
     Shading = "shading",
     /// The walk through the kd-tree.
     Traversal = "traversal",
+    /// Where nodes and triangles lie in device memory.
+    MemoryPath = "memory_path",
     /// A picture of attributes.
     Layer = "layer",
     /// The name of a built-in scene.

@@ -2,6 +2,7 @@
 //! Build flavours: which variants of the kernels there are, and the options that make them.
 
 use super::constants::{FAR_AWAY, LITTLE_OWN_LIGHT, NO_OBJECT, SHARED_CONSTANTS, SRGB_LEAST, WEIGHT_CUTOFF};
+use crate::names::named;
 
 /// How a ray remembers the way through the kd-tree. All ways come to the same leaves in the same order, so that hits and
 /// triangle tests are the same; only the number of steps differs.
@@ -16,19 +17,10 @@ pub enum Traversal {
     Stackless,
 }
 
+// As in profiles.
+named!(Traversal of Traversal { PrivateStack = "private-stack", ShortStack = "short-stack", Stackless = "stackless" });
+
 impl Traversal {
-    /// Every variant with the word that stands for it in a profile.
-    pub const NAMES: [(&'static str, Traversal); 3] = [
-        ("private-stack", Traversal::PrivateStack),
-        ("short-stack", Traversal::ShortStack),
-        ("stackless", Traversal::Stackless),
-    ];
-
-    /// The word that stands for it in a profile.
-    pub fn name(self) -> &'static str {
-        Self::NAMES[self as usize].0
-    }
-
     /// Entries of the short stack; `None` for the private stack.
     pub fn short_stack_entries(self) -> Option<u32> {
         match self {
@@ -86,6 +78,7 @@ pub fn build_options(flavour: BuildFlavour) -> String {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used)]
     use super::*;
 
     #[test]
@@ -102,7 +95,9 @@ mod tests {
 
     #[test]
     fn traversals_have_their_words_and_options() {
-        assert!(Traversal::NAMES.iter().all(|(name, value)| value.name() == *name));
+        assert!(
+            "deep".parse::<Traversal>().unwrap_err().to_string().contains("private-stack, short-stack or stackless")
+        );
         let options = |traversal| build_options(BuildFlavour { traversal, ..BuildFlavour::default() });
         assert!(options(Traversal::ShortStack).ends_with(" -DRAREFY_SHORT_STACK=4"));
         assert!(options(Traversal::Stackless).ends_with(" -DRAREFY_SHORT_STACK=0"));

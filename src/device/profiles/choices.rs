@@ -8,6 +8,8 @@ use super::file::{self, Entries};
 use super::{Certainty, Entry, bad, checked};
 use crate::Result;
 pub use crate::layout::Traversal;
+use crate::names::named;
+use crate::settings::list;
 
 /// Where nodes and triangles lie in device memory.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -19,12 +21,7 @@ pub enum MemoryPath {
     Images,
 }
 
-impl MemoryPath {
-    /// The word that stands for it in a profile.
-    pub fn name(self) -> &'static str {
-        MEMORY_PATHS[self as usize].0
-    }
-}
+named!(MemoryPath of MemoryPath { Buffers = "buffers", Images = "images" });
 
 /// The choices of a profile.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
@@ -35,7 +32,6 @@ pub struct Choices {
 }
 
 const KEYS: [&str; 5] = ["work_group", "memory_path", "traversal", "lanes", "slice_ms"];
-const MEMORY_PATHS: [(&str, MemoryPath); 2] = [("buffers", MemoryPath::Buffers), ("images", MemoryPath::Images)];
 
 impl Choices {
     /// The shape of a stage's work-groups, width then height, in work-items: 8x8 where the profile says nothing.
@@ -51,12 +47,12 @@ impl Choices {
 
     /// Where nodes and triangles lie.
     pub fn memory_path(&self) -> MemoryPath {
-        self.word(&MEMORY_PATHS, "memory_path")
+        self.word("memory_path")
     }
 
     /// How kernels walk the kd-tree.
     pub fn traversal(&self) -> Traversal {
-        self.word(&Traversal::NAMES, "traversal")
+        self.word("traversal")
     }
 
     /// Rays per work-item: 1 where the profile says nothing.
@@ -78,9 +74,9 @@ impl Choices {
         self.entries.iter().find(|(known, _)| *known == key).map(|(_, entry)| &entry.value)
     }
 
-    fn word<T: Copy + Default>(&self, words: &[(&str, T)], key: &str) -> T {
+    fn word<T: std::str::FromStr + Default>(&self, key: &str) -> T {
         let word = self.value(key).and_then(Value::as_str);
-        words.iter().find(|(name, _)| Some(*name) == word).map(|(_, value)| *value).unwrap_or_default()
+        word.and_then(|word| word.parse().ok()).unwrap_or_default()
     }
 
     /// The choices for a device that no profile describes.
@@ -114,8 +110,12 @@ impl Choices {
     }
 }
 
-fn check(key: &str, value: &Value) -> std::result::Result<(), &'static str> {
-    let word = |names: &[&str]| value.as_str().is_some_and(|text| names.contains(&text));
+fn check(key: &str, value: &Value) -> std::result::Result<(), String> {
+    // In lower case, as they are written.
+    let word = |names: &[&str]| match value.as_str() {
+        Some(text) if names.contains(&text) => Ok(()),
+        _ => Err(list(names)),
+    };
     let shape = |value: &Value| {
         let side = |value: &Value| value.as_u64().is_some_and(|side| (1..=4096).contains(&side));
         value.as_array().is_some_and(|sides| sides.len() == 2 && sides.iter().all(side))
@@ -127,15 +127,15 @@ fn check(key: &str, value: &Value) -> std::result::Result<(), &'static str> {
             }),
             "an object of `default` and stages such as `step1`, each [width, height] from 1 to 4096",
         ),
-        "memory_path" => (word(&MEMORY_PATHS.map(|(name, _)| name)), "`buffers` or `images`"),
-        "traversal" => (word(&Traversal::NAMES.map(|(name, _)| name)), "`private-stack`, `short-stack` or `stackless`"),
+        "memory_path" => return word(&MemoryPath::NAMES),
+        "traversal" => return word(&Traversal::NAMES),
         "lanes" => (value.as_u64().is_some_and(|lanes| [1, 4, 8, 16].contains(&lanes)), "1, 4, 8 or 16"),
         _ => (
             value.as_f64().is_some_and(|ms| (0.1..=10_000.0).contains(&ms)),
             "a number of milliseconds from 0.1 to 10000",
         ),
     };
-    if good { Ok(()) } else { Err(must) }
+    if good { Ok(()) } else { Err(must.to_owned()) }
 }
 
 #[cfg(test)]
@@ -158,11 +158,6 @@ mod tests {
         assert_eq!(profile.choices().work_group("step2a"), [64, 1]);
         assert_eq!(with_choice("traversal", "\"stackless\"").unwrap().choices().traversal(), Traversal::Stackless);
         assert_eq!(with_choice("memory_path", "\"images\"").unwrap().choices().memory_path(), MemoryPath::Images);
-    }
-
-    #[test]
-    fn words_are_those_of_the_files() {
-        assert!(MEMORY_PATHS.iter().all(|(name, value)| value.name() == *name));
     }
 
     #[test]

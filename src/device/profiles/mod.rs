@@ -274,11 +274,11 @@ fn unknown(place: &str, key: &str) -> Error {
 }
 
 /// The entry at `key`, unless its value is not what it must be: `check` says what.
-fn checked(
+fn checked<M: std::fmt::Display>(
     place: &str,
     key: &str,
     entry: Entry,
-    check: impl Fn(&Value) -> std::result::Result<(), &'static str>,
+    check: impl Fn(&Value) -> std::result::Result<(), M>,
 ) -> Result<Entry> {
     let value = &entry.value;
     if !value.is_null() {
