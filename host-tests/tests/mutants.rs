@@ -2,7 +2,8 @@
 //! Negative controls of the parity tests: each row breaks one line of a kernel, and the comparison of that kernel with
 //! its twin must see it.
 //!
-//! Frames are tiny and only the kernel in question runs on the device, so that a mutant costs one small program.
+//! Frames are tiny and only the kernel in question runs on the device, so that a mutant costs one small program. The quick
+//! tests take a mutant of each file and each launch; all of them are a matter of `--long`.
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use std::collections::{BTreeSet, HashMap};
@@ -364,15 +365,32 @@ fn parity(prepared: &Prepared, shot: Shot, launch: Launch, mutation: Option<Muta
     prepared.parity(&mut device, &shot.options(), shot.counters(), Some(launch)).unwrap()
 }
 
-/// Each table is a test of its own, so that they run side by side.
-fn every_broken_line_is_caught(tables: &[&'static [Mutant]]) {
+/// All tables.
+const TABLES: [&[Mutant]; 10] =
+    [ENTRY_POINTS, CORRECTION, BRIDGES, KNOWN_SHADOWS, TRAVERSAL, SHORT_WALK, RAY_TREE, SHADING, SIMILARITY, PACKING];
+
+/// Of each file, and of each launch that these leave out, the first mutant: a mutant costs a program.
+fn sample() -> Vec<&'static Mutant> {
+    let all = || TABLES.into_iter().flatten();
+    let mut chosen: Vec<&Mutant> = Vec::new();
+    for &(file, _) in FILES {
+        chosen.extend(all().find(|mutant| mutant.0 == file));
+    }
+    for (stage, kernel, _) in LAUNCHES {
+        if chosen.iter().all(|mutant| mutant.4 != (stage, kernel)) {
+            chosen.extend(all().find(|mutant| mutant.4 == (stage, kernel)));
+        }
+    }
+    chosen
+}
+
+fn every_broken_line_is_caught(mutants: impl IntoIterator<Item = &'static Mutant>) {
     if no_opencl() {
         return;
     }
     // For whoever changes one kernel: only mutants of this file.
     let only = std::env::var("MUTANTS_OF").unwrap_or_default();
-    let all = tables.iter().copied().flatten();
-    let mutants: Vec<&Mutant> = all.filter(|mutant| mutant.0.contains(&only)).collect();
+    let mutants: Vec<&Mutant> = mutants.into_iter().filter(|mutant| mutant.0.contains(&only)).collect();
     let mut scenes: HashMap<&str, Prepared> = HashMap::new();
     let mut sound: BTreeSet<String> = BTreeSet::new();
     let mut missed = Vec::new();
@@ -405,45 +423,69 @@ fn every_broken_line_is_caught(tables: &[&'static [Mutant]]) {
 }
 
 #[test]
-fn every_entry_point_has_a_mutant_and_all_are_caught() {
-    let covered: BTreeSet<Launch> = ENTRY_POINTS.iter().map(|m| m.4).collect();
+fn every_file_and_every_launch_has_a_mutant() {
+    let launches: BTreeSet<Launch> = ENTRY_POINTS.iter().map(|m| m.4).collect();
     let all = LAUNCHES.into_iter().map(|(stage, kernel, _)| (stage, kernel)).collect();
-    assert_eq!(covered, all, "a launch without a mutant of its own");
-    every_broken_line_is_caught(&[ENTRY_POINTS]);
+    assert_eq!(launches, all, "a launch without a mutant of its own");
+    let sampled: BTreeSet<Launch> = sample().into_iter().map(|m| m.4).collect();
+    assert_eq!(sampled, all, "a launch that the quick tests leave out");
+    // Structs are probed, and the probe has nothing to break.
+    let files = FILES.iter().map(|(file, _)| *file).filter(|file| !matches!(*file, "types.h" | "probe.cl"));
+    let without: Vec<&str> = files.filter(|file| sample().iter().all(|mutant| mutant.0 != *file)).collect();
+    assert!(without.is_empty(), "no mutant of {without:?}");
+}
+
+// Each a test of its own, so that they run side by side.
+
+#[test]
+fn a_first_half_of_the_sample_is_caught() {
+    every_broken_line_is_caught(sample().into_iter().step_by(2));
 }
 
 #[test]
-fn mutants_of_correction_are_caught() {
-    every_broken_line_is_caught(&[CORRECTION]);
+fn a_second_half_of_the_sample_is_caught() {
+    every_broken_line_is_caught(sample().into_iter().skip(1).step_by(2));
 }
 
 #[test]
-fn mutants_across_gaps_and_of_known_shadows_are_caught() {
-    every_broken_line_is_caught(&[BRIDGES, KNOWN_SHADOWS]);
+#[ignore = "long: a mutant of each entry point and of every line of correction"]
+fn mutants_of_entry_points_and_correction_are_caught() {
+    every_broken_line_is_caught([ENTRY_POINTS, CORRECTION].into_iter().flatten());
 }
 
 #[test]
-fn mutants_of_walks_and_rays_are_caught() {
-    every_broken_line_is_caught(&[TRAVERSAL, SHORT_WALK, RAY_TREE]);
+#[ignore = "long: every mutant of bridges, known shadows, checks and packing"]
+fn mutants_of_bridges_shadows_checks_and_packing_are_caught() {
+    every_broken_line_is_caught([BRIDGES, KNOWN_SHADOWS, SIMILARITY, PACKING].into_iter().flatten());
 }
 
 #[test]
-fn mutants_of_checks_shading_and_packing_are_caught() {
-    every_broken_line_is_caught(&[SHADING, SIMILARITY, PACKING]);
+#[ignore = "long: every mutant of walks, rays and shading"]
+fn mutants_of_walks_rays_and_shading_are_caught() {
+    every_broken_line_is_caught([TRAVERSAL, SHORT_WALK, RAY_TREE, SHADING].into_iter().flatten());
 }
 
-#[test]
-fn the_self_test_names_every_stage_that_is_broken() {
+/// Breaks a stage and looks at what the self-test says.
+fn the_self_test_names(stage: Stage) {
     if no_opencl() {
         return;
     }
-    for stage in Stage::ALL {
-        let mutation = Some(full::breaking_mutation(stage));
-        let result = full::run(&DeviceOptions { mutation, ..DeviceOptions::default() }).unwrap();
-        let wrong: Vec<&str> = result.checks.iter().filter(|c| !c.passed).map(|c| c.name.as_str()).collect();
-        assert!(!wrong.is_empty(), "{}: passes", stage.name());
-        assert!(wrong.iter().all(|name| name.starts_with(stage.name())), "{}: {wrong:?}", stage.name());
-        let error = result.require().unwrap_err().to_string();
-        assert!(error.contains(&format!(": {}", stage.name())), "{error}");
-    }
+    let mutation = Some(full::breaking_mutation(stage));
+    let result = full::run(&DeviceOptions { mutation, ..DeviceOptions::default() }).unwrap();
+    let wrong: Vec<&str> = result.checks.iter().filter(|c| !c.passed).map(|c| c.name.as_str()).collect();
+    assert!(!wrong.is_empty(), "{}: passes", stage.name());
+    assert!(wrong.iter().all(|name| name.starts_with(stage.name())), "{}: {wrong:?}", stage.name());
+    let error = result.require().unwrap_err().to_string();
+    assert!(error.contains(&format!(": {}", stage.name())), "{error}");
+}
+
+#[test]
+fn the_self_test_names_a_stage_that_is_broken() {
+    the_self_test_names(Stage::Step2b);
+}
+
+#[test]
+#[ignore = "long: the self-test with each stage broken in turn"]
+fn the_self_test_names_every_stage_that_is_broken() {
+    Stage::ALL.into_iter().for_each(the_self_test_names);
 }
