@@ -110,6 +110,12 @@ fn no_result_overwrites_another_or_what_was_read() {
     let path = |name: &str| folder.path().join(name);
     std::fs::create_dir(path("scene")).unwrap();
     std::fs::write(path("scene/scene.obj"), OBJ).unwrap();
+    // A scene whose OBJ file names others.
+    std::fs::create_dir(path("textured")).unwrap();
+    std::fs::write(path("textured/scene.obj"), format!("mtllib m.mtl\nusemtl a\n{OBJ}")).unwrap();
+    std::fs::write(path("textured/m.mtl"), "newmtl a\nmap_Kd t.png\nmap_d ../opacity.png\n").unwrap();
+    image::RgbImage::new(2, 2).save(path("textured/t.png")).unwrap();
+    image::RgbImage::new(2, 2).save(path("opacity.png")).unwrap();
     std::fs::write(path("profile.json"), "{}").unwrap();
     symlink(path("scene"), path("same")).unwrap();
     std::fs::write(path("a.png"), "").unwrap();
@@ -131,6 +137,14 @@ fn no_result_overwrites_another_or_what_was_read() {
         ("diff c.png a.png -o b.png".to_owned(), ["-o", "b.png", read]),
         ("diff a.png a.png -o c.png --json c.png".to_owned(), ["--json", "c.png", twice]),
         ("doctor scene --json scene/scene.obj".to_owned(), ["--json", "scene.obj", read]),
+        (format!("{draw} -o textured/t.png").replace("scene --", "textured --"), ["-o", "t.png", read]),
+        (
+            format!("{draw} -o c.png --layer class=opacity.png").replace("scene --", "textured --"),
+            ["--layer", "opacity.png", read],
+        ),
+        ("compare textured --device cpu --frames 1 --json textured/m.mtl".to_owned(), ["--json", "m.mtl", read]),
+        ("doctor textured --json textured/m.mtl".to_owned(), ["--json", "m.mtl", read]),
+        ("bake textured -o textured/m.mtl".to_owned(), ["-o", "m.mtl", read]),
         ("compare scene --device cpu --frames 1 -o . --json full.png".to_owned(), ["-o", "full.png", twice]),
     ] {
         println!("{arguments}");
@@ -138,6 +152,7 @@ fn no_result_overwrites_another_or_what_was_read() {
     }
     assert_eq!(entries(folder.path()), before);
     assert_eq!(std::fs::read_to_string(path("scene/scene.obj")).unwrap(), OBJ);
+    assert!(std::fs::read_to_string(path("textured/m.mtl")).unwrap().starts_with("newmtl"));
     // Different files are no matter, and neither are devices, which nothing is lost in.
     run(folder.path(), &format!("{draw} -o c.png --layer class=d.png --json scene/e.json")).expect(0);
     run(folder.path(), &format!("{draw} -o /dev/null --layer class=/dev/null")).expect(0);

@@ -13,8 +13,9 @@ use super::progress::{Loaded, load_prepared};
 
 /// Prepares a scene and writes it as a baked file.
 pub fn run(args: &BakeArgs, interrupt: &Interrupt) -> Result<()> {
-    Outputs::of_scene(&args.scene, Path::new("")).file("-o", &args.output)?;
-    let loaded = load_prepared(&args.scene, args.shading, interrupt)?;
+    let mut outputs = Outputs::of_scene(&args.scene, Path::new(""));
+    outputs.file("-o", &args.output)?;
+    let loaded = load_prepared(&args.scene, args.shading, &outputs, interrupt)?;
     loaded.tell();
     let Loaded { prepared, .. } = loaded;
     interrupt.watch(|_| prepared.bake_to(&args.output))?;

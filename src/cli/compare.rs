@@ -37,7 +37,7 @@ pub fn run(args: &CompareArgs, interrupt: &Interrupt) -> Result<()> {
         PICTURES.iter().try_for_each(|name| outputs.picture("-o", &folder.join(name)))?;
     }
     let (mut renderer, load_ms) =
-        make_renderer(&args.draw.scene, args.draw.shading, &args.draw.device_options()?, interrupt)?;
+        make_renderer(&args.draw.scene, args.draw.shading, &args.draw.device_options()?, &outputs, interrupt)?;
     let notices = renderer.notices().len();
     let comparison = watched(&mut renderer, interrupt, |renderer| compare(renderer, &options, args.frames))?;
     let waves = if args.wave_model {

@@ -33,13 +33,14 @@ fn word(severity: Severity) -> &'static str {
 
 /// Prints what is odd about a scene.
 pub fn run(args: &DoctorArgs, interrupt: &Interrupt) -> Result<()> {
-    Outputs::of_scene(&args.scene, Path::new("")).json(args.json.as_deref())?;
+    let mut outputs = Outputs::of_scene(&args.scene, Path::new(""));
+    outputs.json(args.json.as_deref())?;
     if PreparedScene::is_baked_file(&args.scene) {
         let message =
             "this is a baked scene, in which nothing odd can be seen any more; examine what it was baked from";
         return Err(Error::scene(args.scene.display().to_string(), message));
     }
-    let scene = load_scene(&args.scene, interrupt)?;
+    let scene = load_scene(&args.scene, &outputs, interrupt)?;
     let findings = examine(&scene);
     let json = args.json.as_deref();
     let summary = format!(

@@ -2,6 +2,7 @@
 //! What a command is about to write, checked before any long work: every file can be written, no two are the same, and
 //! none is one that the command reads.
 
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 use rarefy::internal::files;
@@ -12,6 +13,9 @@ use super::output::STANDARD_OUTPUT;
 /// Endings of pictures that are not written.
 const OTHER_PICTURES: [&str; 14] =
     ["jpg", "jpeg", "jpe", "jfif", "bmp", "gif", "tif", "tiff", "webp", "exr", "hdr", "ppm", "tga", "avif"];
+
+/// Why an input is no output.
+const IS_READ: &str = "this file is read by the same command";
 
 /// Files that a command reads and writes.
 #[derive(Debug, Default)]
@@ -72,12 +76,27 @@ impl Outputs {
         let refuse =
             |why: String| Err(Error::argument(option, format!("{}: {why}; name another file", path.display())));
         if self.inputs.contains(&full_name) {
-            return refuse("this file is read by the same command".to_owned());
+            return refuse(IS_READ.to_owned());
         }
         if let Some((_, other)) = self.outputs.iter().find(|(taken, _)| *taken == full_name) {
             return refuse(format!("{other} writes to the same file"));
         }
         self.outputs.push((full_name, option.to_owned()));
         Ok(())
+    }
+
+    /// The command has read these files, too, as a scene names its materials and textures.
+    ///
+    /// # Errors
+    /// If one of them is about to be overwritten.
+    pub fn were_read(&self, files: &[PathBuf]) -> Result<()> {
+        // Few outputs, maybe many textures.
+        let read: HashSet<PathBuf> = files.iter().filter_map(|path| path.canonicalize().ok()).collect();
+        match self.outputs.iter().find(|(output, _)| read.contains(output)) {
+            Some((output, option)) => {
+                Err(Error::argument(option, format!("{}: {IS_READ}; name another file", output.display())))
+            }
+            None => Ok(()),
+        }
     }
 }

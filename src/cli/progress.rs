@@ -11,11 +11,12 @@ use rarefy::internal::monitor::{Event, Monitor};
 use rarefy::internal::prepare::{PreparedScene, Shading};
 use rarefy::internal::render::renderer::Renderer;
 use rarefy::internal::scene::doctor::notices;
-use rarefy::internal::scene::{self, builtin};
+use rarefy::internal::scene::{self, LoadOptions, builtin};
 use rarefy::{Error, Result, Scene};
 
 use super::interrupt::Interrupt;
 use super::output::{note_all, warn_all};
+use super::outputs::Outputs;
 
 /// Nothing is shown before this much time has passed.
 const QUIET: Duration = Duration::from_secs(1);
@@ -89,14 +90,21 @@ pub fn watched<T>(
 }
 
 /// The scene that `name` means: a file or folder, else a built-in scene.
-pub fn load_scene(name: &Path, interrupt: &Interrupt) -> Result<Scene> {
-    with_bar(interrupt, |monitor| load(name, monitor))
+///
+/// # Errors
+/// Those of loading, and a file of the scene that is about to be overwritten.
+pub fn load_scene(name: &Path, outputs: &Outputs, interrupt: &Interrupt) -> Result<Scene> {
+    with_bar(interrupt, |monitor| load(name, outputs, monitor))
 }
 
-fn load(path: &Path, monitor: &Monitor) -> Result<Scene> {
+fn load(path: &Path, outputs: &Outputs, monitor: &Monitor) -> Result<Scene> {
     match path.to_str() {
         Some(name) if builtin::NAMES.contains(&name) && !path.exists() => builtin::to_scene(name),
-        _ => scene::load(path, monitor),
+        _ => {
+            let (scene, files) = scene::load_listing(path, &LoadOptions::default(), monitor)?;
+            outputs.were_read(&files)?;
+            Ok(scene)
+        }
     }
 }
 
@@ -118,11 +126,11 @@ impl Loaded {
 }
 
 /// Loads the scene that `name` means and prepares it for `shading`, or reads a baked one.
-pub fn load_prepared(name: &Path, shading: Shading, interrupt: &Interrupt) -> Result<Loaded> {
-    with_bar(interrupt, |monitor| prepare(name, shading, monitor))
+pub fn load_prepared(name: &Path, shading: Shading, outputs: &Outputs, interrupt: &Interrupt) -> Result<Loaded> {
+    with_bar(interrupt, |monitor| prepare(name, shading, outputs, monitor))
 }
 
-fn prepare(name: &Path, shading: Shading, monitor: &Monitor) -> Result<Loaded> {
+fn prepare(name: &Path, shading: Shading, outputs: &Outputs, monitor: &Monitor) -> Result<Loaded> {
     let started = Instant::now();
     if PreparedScene::is_baked_file(name) {
         let prepared = PreparedScene::from_baked_file(name, monitor)?;
@@ -137,7 +145,7 @@ fn prepare(name: &Path, shading: Shading, monitor: &Monitor) -> Result<Loaded> {
         let load_ms = started.elapsed().as_secs_f64() * 1e3;
         return Ok(Loaded { prepared, load_ms, warnings: Vec::new(), notices: Vec::new() });
     }
-    let scene = load(name, monitor)?;
+    let scene = load(name, outputs, monitor)?;
     let load_ms = started.elapsed().as_secs_f64() * 1e3;
     let warnings = scene.warnings().to_vec();
     let notices = notices(&scene);
@@ -149,9 +157,10 @@ pub fn make_renderer(
     name: &Path,
     shading: Shading,
     options: &DeviceOptions,
+    outputs: &Outputs,
     interrupt: &Interrupt,
 ) -> Result<(Renderer, f64)> {
-    let loaded = load_prepared(name, shading, interrupt)?;
+    let loaded = load_prepared(name, shading, outputs, interrupt)?;
     loaded.tell();
     let Loaded { prepared, load_ms, .. } = loaded;
     let prepared = Arc::new(prepared);

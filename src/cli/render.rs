@@ -40,7 +40,7 @@ pub fn run(args: &RenderArgs, interrupt: &Interrupt) -> Result<()> {
     outputs.json(args.draw.json.as_deref())?;
 
     let (mut renderer, load_ms) =
-        make_renderer(&args.draw.scene, args.draw.shading, &args.draw.device_options()?, interrupt)?;
+        make_renderer(&args.draw.scene, args.draw.shading, &args.draw.device_options()?, &outputs, interrupt)?;
     let notices = renderer.notices().len();
     let frame = watched(&mut renderer, interrupt, |renderer| renderer.render(&options, keep))?;
     warn_all(&renderer.notices()[notices..]);

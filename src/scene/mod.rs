@@ -20,7 +20,7 @@ pub use check::{
     MAX_TEXTURE_SIDE, MAX_TRIANGLES, MAX_VIEW_COORDINATE,
 };
 pub(crate) use import::complete_view;
-pub use import::{FileSource, LoadOptions, load, load_from, load_with};
+pub use import::{FileSource, LoadOptions, load, load_from, load_listing, load_with};
 
 pub use crate::layout::NO_OBJECT;
 

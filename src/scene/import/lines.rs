@@ -214,7 +214,8 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("x.obj");
         std::fs::write(&path, bytes).unwrap();
-        let mut lines = LogicalLines::open(&Source::Disk { confined_to: None }, &path, MAX_OBJ_BYTES)?;
+        let mut lines =
+            LogicalLines::open(&Source::Disk { confined_to: None, opened: Default::default() }, &path, MAX_OBJ_BYTES)?;
         let mut all = Vec::new();
         while let Some((number, line)) = lines.next_line()? {
             all.push((number, name_text(line)));

@@ -40,6 +40,14 @@ pub fn load(path: &Path, monitor: &Monitor) -> Result<Scene> {
 /// # Errors
 /// As for [`load`].
 pub fn load_with(path: &Path, options: &LoadOptions, monitor: &Monitor) -> Result<Scene> {
+    load_listing(path, options, monitor).map(|(scene, _)| scene)
+}
+
+/// As [`load_with`], with the files that were read, for whoever must not overwrite them.
+///
+/// # Errors
+/// As for [`load`].
+pub fn load_listing(path: &Path, options: &LoadOptions, monitor: &Monitor) -> Result<(Scene, Vec<PathBuf>)> {
     let files = find_files(path)?;
     let source = Source::disk(files.obj.parent().unwrap_or(Path::new("")), options)?;
     // Even these may be links.
@@ -47,7 +55,8 @@ pub fn load_with(path: &Path, options: &LoadOptions, monitor: &Monitor) -> Resul
         let message = "lies outside the scene's folder, to which these options confine it";
         return Err(Error::scene(outside.display().to_string(), message));
     }
-    load_files(files, &source, options, monitor)
+    let scene = load_files(files, &source, options, monitor)?;
+    Ok((scene, source.opened()))
 }
 
 /// Loads the scene `name` from files that are no files of the file system: the same scene as [`load`] makes of the same

@@ -371,7 +371,7 @@ mod tests {
         let path = dir.path().join("m.mtl");
         std::fs::write(&path, format!("newmtl a\n{}\n", mtl.replace("; ", "\n"))).unwrap();
         let (mut warnings, mut unused) = (Vec::new(), Vec::new());
-        let source = super::super::source::Source::Disk { confined_to: None };
+        let source = super::super::source::Source::Disk { confined_to: None, opened: Default::default() };
         let materials = super::super::mtl::read(&source, &path, &mut warnings, &mut unused).unwrap();
         let view = super::super::view::parse(std::path::Path::new("view.json"), &format!("{{{view}}}")).unwrap();
         let m = &materials[0];

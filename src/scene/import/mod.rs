@@ -19,7 +19,7 @@ mod triangulate;
 mod unused;
 mod view;
 
-pub use load::{load, load_from, load_with};
+pub use load::{load, load_from, load_listing, load_with};
 pub use options::LoadOptions;
 pub use source::FileSource;
 pub(crate) use view::complete as complete_view;

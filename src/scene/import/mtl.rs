@@ -321,7 +321,8 @@ mod tests {
         let path = dir.path().join("m.mtl");
         std::fs::write(&path, text).unwrap();
         let (mut warnings, mut unused) = (Vec::new(), Vec::new());
-        let materials = read(&Source::Disk { confined_to: None }, &path, &mut warnings, &mut unused);
+        let materials =
+            read(&Source::Disk { confined_to: None, opened: Default::default() }, &path, &mut warnings, &mut unused);
         (materials, warnings, unused)
     }
 

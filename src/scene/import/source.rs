@@ -73,6 +73,8 @@ pub(super) enum Source<'a> {
     Disk {
         /// The folder that everything must lie in, in full.
         confined_to: Option<PathBuf>,
+        /// What was opened.
+        opened: RefCell<Vec<PathBuf>>,
     },
     /// What a caller opens. Kept with the file that was asked for last: to look whether it is there is to read it.
     Caller(&'a dyn FileSource, RefCell<Option<(PathBuf, Vec<u8>)>>),
@@ -85,7 +87,7 @@ impl<'a> Source<'a> {
             true => Some(full(folder).map_err(|e| Error::io(folder, e))?),
             false => None,
         };
-        Ok(Source::Disk { confined_to })
+        Ok(Source::Disk { confined_to, opened: RefCell::default() })
     }
 
     /// The files of a caller.
@@ -111,7 +113,7 @@ impl<'a> Source<'a> {
     /// Whether there is such a file, but outside of the folder that the scene is confined to.
     pub(super) fn forbids(&self, path: &Path) -> bool {
         match self {
-            Source::Disk { confined_to: Some(folder) } => {
+            Source::Disk { confined_to: Some(folder), .. } => {
                 full(path).is_ok_and(|path| !path.starts_with(folder)) && path.exists()
             }
             _ => false,
@@ -129,10 +131,21 @@ impl<'a> Source<'a> {
         }
     }
 
+    /// The files that were opened, in order; a caller knows its own.
+    pub(super) fn opened(self) -> Vec<PathBuf> {
+        match self {
+            Source::Disk { opened, .. } => opened.into_inner(),
+            Source::Caller(..) => Vec::new(),
+        }
+    }
+
     /// Opens a file of at most `max_bytes`.
     pub(super) fn open(&self, path: &Path, max_bytes: u64) -> Result<Input> {
         match self {
-            Source::Disk { .. } => files::open(path, max_bytes).map(Input::File),
+            Source::Disk { opened, .. } => {
+                opened.borrow_mut().push(path.to_path_buf());
+                files::open(path, max_bytes).map(Input::File)
+            }
             Source::Caller(..) => Ok(Input::Bytes(Cursor::new(self.bytes(path, max_bytes)?))),
         }
     }
@@ -140,7 +153,10 @@ impl<'a> Source<'a> {
     /// Reads a file of at most `max_bytes` whole.
     pub(super) fn read(&self, path: &Path, max_bytes: u64) -> Result<Vec<u8>> {
         match self {
-            Source::Disk { .. } => files::read(path, max_bytes),
+            Source::Disk { opened, .. } => {
+                opened.borrow_mut().push(path.to_path_buf());
+                files::read(path, max_bytes)
+            }
             Source::Caller(..) => self.bytes(path, max_bytes),
         }
     }
