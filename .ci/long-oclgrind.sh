@@ -24,11 +24,14 @@ export OCLGRIND_GLOBAL_MEM_SIZE=1073741824
 
 # One process a test: Oclgrind opens its log once.
 for test in no_kernel_races_or_leaves_its_buffers a_racing_kernel_is_found \
-    no_kernel_reads_what_nobody_wrote a_read_of_what_nobody_wrote_is_found; do
+    no_kernel_reads_what_nobody_wrote a_read_of_what_nobody_wrote_is_found \
+    no_frame_in_the_space_of_options_races_or_leaves_its_buffers; do
     # This check is right only where no buffer is released before and none is written in part: docs/implementations.md.
     unset OCLGRIND_UNINITIALIZED
     case $test in *nobody_wrote*) export OCLGRIND_UNINITIALIZED=1 ;; esac
     export OCLGRIND_LOG=$scratch/$test.log RAREFY_OCLGRIND_LOG=$scratch/$test.log
-    rm -rf target/tmp/oclgrind
-    cargo test --quiet --package rarefy-host-tests --test oclgrind -- --ignored --exact --nocapture "$test"
+    rm -rf target/tmp/oclgrind target/tmp/option-space
+    binary=oclgrind
+    case $test in *space_of_options*) binary=option_space ;; esac
+    cargo test --quiet --package rarefy-host-tests --test $binary -- --ignored --exact --nocapture "$test"
 done

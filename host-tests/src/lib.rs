@@ -9,3 +9,4 @@ pub mod contexts;
 pub mod fixtures;
 pub mod frames;
 pub mod masks;
+pub mod option_space;

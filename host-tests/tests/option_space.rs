@@ -2,18 +2,17 @@
 //! Do frames anywhere in the space of options stay within their buffers, and are they the same on the twin and on OpenCL?
 #![allow(clippy::unwrap_used, missing_docs)]
 
+use std::path::Path;
+
 use rarefy::Scene;
 use rarefy::internal::device::open::{DeviceChoice, DeviceOptions};
-use rarefy::internal::device::opencl::OpenOptions;
+use rarefy::internal::device::opencl::{CacheFolder, OpenOptions};
 use rarefy::internal::method::counts::Keep;
-use rarefy::internal::method::options::{
-    Checks, Compared, Correction, GcolSpace, Interpolation, Method, Mode, RenderOptions, Test, TestSet, TextureRule,
-    Tolerances,
-};
-use rarefy::internal::render::renderer::Renderer;
+use rarefy::internal::method::options::RenderOptions;
 use rarefy::internal::scene::builtin;
 use rarefy_host_tests::fixtures::{Random, SceneBuilder, blocks, dashes, matte, mirror, v, with};
 use rarefy_host_tests::frames::{Prepared, device, no_opencl, renderer_of, twin, zoo};
+use rarefy_host_tests::option_space::options;
 
 /// Every check fails: with blocks of 4, fifteen sixteenths of the pixels are sources of correction's first round, each
 /// with five items. That was more than the masks held, and corrupted the heap under OpenCL.
@@ -35,86 +34,6 @@ fn a_frame_in_which_every_check_fails_fits_its_buffers() {
     }
 }
 
-/// One of the values.
-fn any<T: Copy>(random: &mut Random, values: &[T]) -> T {
-    values[random.below(values.len())]
-}
-
-fn flip(random: &mut Random) -> bool {
-    random.below(2) == 0
-}
-
-/// Tolerances from "every pair fails" to "every pair passes".
-fn tolerances(random: &mut Random) -> Tolerances {
-    Tolerances {
-        t_pos: any(random, &[0.0, 0.001, 0.03, 0.06, 1.0e9]),
-        t_norm: any(random, &[-1.0, 0.5, 0.9, 0.99, 2.0]),
-        t_conv: any(random, &[0.0, 0.05, 0.2, 1.0]),
-        t_tex: any(random, &[0.0, 0.1, 0.3, 1.0]),
-        t_gcol: any(random, &[0.0, 0.05, 0.15, 10.0]),
-    }
-}
-
-fn compared(random: &mut Random) -> Compared {
-    let t_visible = any(random, &[0, 1, 6, 255]);
-    match random.below(3) {
-        0 => Compared::Object,
-        1 => Compared::ObjectAndShadow { t_visible },
-        _ => {
-            Compared::All { t_visible, t_norm: any(random, &[-1.0, 0.9, 2.0]), t_gcol: any(random, &[0.0, 0.07, 10.0]) }
-        }
-    }
-}
-
-fn method(random: &mut Random) -> Method {
-    let tests = Test::ALL.into_iter().filter(|_| random.below(4) > 0);
-    let tests = tests.fold(TestSet::NONE, TestSet::with);
-    let compared = compared(random);
-    Method {
-        block: any(random, &[2, 4]),
-        checks: Checks {
-            tests: if flip(random) { TestSet::ALL } else { tests },
-            fine: tolerances(random),
-            coarse: tolerances(random),
-            textures: any(random, &TextureRule::ALL),
-            gcol_space: any(random, &GcolSpace::ALL),
-            second_pairs: flip(random),
-        },
-        interpolation: any(random, &Interpolation::ALL),
-        correction: match random.below(5) {
-            0 => Correction::Off,
-            1 => Correction::Sweeps(compared),
-            _ => Correction::Converged { compared, thin_only: flip(random), bridges: flip(random) },
-        },
-        reuse_shadows: flip(random),
-    }
-}
-
-/// Sides from one pixel to a few blocks and tiles, odd ones among them.
-fn side(random: &mut Random) -> u32 {
-    match random.below(3) {
-        0 => any(random, &[1, 2, 3, 4, 5, 31, 32, 33, 63, 64, 65]),
-        _ => 1 + random.below(70) as u32,
-    }
-}
-
-fn options(random: &mut Random) -> RenderOptions {
-    let method = method(random);
-    let samples = any(random, &[1, 1, 1, 2, 4]);
-    let (width, height) = (side(random).div_ceil(samples), side(random).div_ceil(samples));
-    // Sweeps cannot be drawn in bands; a frame of one band may have as many rows as it likes.
-    let banded = random.below(3) == 0 && !matches!(method.correction, Correction::Sweeps(_));
-    RenderOptions {
-        width,
-        height,
-        samples,
-        mode: if random.below(8) == 0 { Mode::Full } else { Mode::Adaptive },
-        depth: any(random, &[0, 1, 4]),
-        method,
-        band_rows: banded.then(|| 1 + random.below(40) as u32),
-    }
-}
-
 /// Triangles of all sizes without order, half of them mirrors: hardly a check succeeds.
 fn thicket() -> Scene {
     let mut random = Random::new(16);
@@ -133,22 +52,32 @@ fn scenes() -> Vec<Scene> {
     builtin.into_iter().chain([zoo(), thicket(), dashes(&[(12.3, 6.0), (52.3, -9.0)])]).collect()
 }
 
-fn renderer(scene: &Scene, device: DeviceChoice) -> Renderer {
-    let options = DeviceOptions { device, strict: true, ..DeviceOptions::default() };
-    renderer_of(scene, &options, &rarefy::Monitor::default()).unwrap()
+/// How frames are drawn on OpenCL.
+#[derive(Clone, Copy, Default)]
+struct Space {
+    /// Kernels with bounds checks.
+    bounds_checks: bool,
+    /// Most samples of a side; `None`: a few tiles.
+    largest: Option<u32>,
 }
 
 /// Draws `rounds` random frames on the twin and on OpenCL: no launch may be refused, no result may differ.
-fn draw_anywhere(seed: u64, rounds: usize) {
+fn draw_anywhere(seed: u64, rounds: usize, space: Space) {
     let mut random = Random::new(seed);
     let with_opencl = !no_opencl();
     let scenes = scenes();
+    let renderer = |scene: &Scene, device| {
+        let cache = CacheFolder::At(Path::new(env!("CARGO_TARGET_TMPDIR")).join("option-space"));
+        let Space { bounds_checks, .. } = space;
+        let options = DeviceOptions { device, strict: true, bounds_checks, cache, ..DeviceOptions::default() };
+        renderer_of(scene, &options, &rarefy::Monitor::default()).unwrap()
+    };
     let mut drawn = 0;
     for (at, scene) in scenes.iter().enumerate() {
         let mut twin = renderer(scene, DeviceChoice::Cpu);
         let mut device = with_opencl.then(|| renderer(scene, DeviceChoice::OpenCl(None)));
         for _ in (at..rounds).step_by(scenes.len()) {
-            let options = options(&mut random);
+            let options = options(&mut random, space.largest.unwrap_or(70));
             let frame = twin.render_exactly(&options, Keep::EVERYTHING);
             let frame = frame.unwrap_or_else(|error| panic!("{}: {options:?}: {error}", scene.name()));
             let p = frame.stats.pixels;
@@ -172,12 +101,32 @@ fn draw_anywhere(seed: u64, rounds: usize) {
 
 #[test]
 fn frames_anywhere_in_the_space_of_options_are_drawn_alike() {
-    draw_anywhere(2016, 70);
+    draw_anywhere(2016, 70, Space::default());
 }
 
 #[test]
 #[ignore = "long: thousands of frames anywhere in the space of options"]
 fn thousands_of_frames_anywhere_in_the_space_of_options() {
-    let rounds = std::env::var("OPTION_SPACE_FRAMES").ok().and_then(|count| count.parse().ok());
-    draw_anywhere(805, rounds.unwrap_or(4_000));
+    let number = |name: &str| std::env::var(name).ok().and_then(|value| value.parse::<usize>().ok());
+    // For whoever has the time: how many, how large, and which ones.
+    let largest = number("OPTION_SPACE_LARGEST").map(|largest| largest as u32);
+    let seed = number("OPTION_SPACE_SEED").unwrap_or(805) as u64;
+    draw_anywhere(seed, number("OPTION_SPACE_FRAMES").unwrap_or(4_000), Space { largest, ..Space::default() });
+}
+
+#[test]
+#[ignore = "long: hundreds of frames anywhere in the space of options by kernels with bounds checks"]
+fn frames_anywhere_stay_within_their_buffers_access_by_access() {
+    draw_anywhere(77, 700, Space { bounds_checks: true, ..Space::default() });
+}
+
+#[test]
+#[ignore = "oclgrind: small frames anywhere in the space of options"]
+fn no_frame_in_the_space_of_options_races_or_leaves_its_buffers() {
+    let Some(log) = std::env::var_os("RAREFY_OCLGRIND_LOG") else {
+        println!("skipped: run by .ci/long-oclgrind.sh");
+        return;
+    };
+    draw_anywhere(21, 35, Space { largest: Some(14), ..Space::default() });
+    assert_eq!(std::fs::read_to_string(log).unwrap_or_default(), "", "Oclgrind found something");
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Where kernels run: the kernels and stages, the CPU twin, OpenCL devices and their profiles, hooks on launches.
 
+pub mod bounds;
 mod device_choice;
 pub mod executor;
 pub mod frame_memory;

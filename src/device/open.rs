@@ -46,6 +46,9 @@ pub struct DeviceOptions {
     /// Kernels broken on purpose, for tests and the self-test's negative control.
     #[doc(hidden)]
     pub mutation: Option<Mutation>,
+    /// For tests: kernels with bounds checks on an OpenCL device; an access beyond a buffer is an error.
+    #[doc(hidden)]
+    pub bounds_checks: bool,
     /// For tests: when the OpenCL device is lost.
     #[doc(hidden)]
     pub faults: Faults,
@@ -77,7 +80,11 @@ fn open_options(options: &DeviceOptions, index: Option<usize>, careful: bool) ->
 /// As for [`open_opencl`].
 pub(crate) fn open_number(options: &DeviceOptions, index: Option<usize>, careful: bool) -> Result<OpenClExecutor> {
     let context = opencl::open_with(&open_options(options, index, careful))?;
-    Ok(OpenClExecutor::new(context, options.strict, options.mutation.clone()))
+    let mut executor = OpenClExecutor::new(context, options.strict, options.mutation.clone());
+    if options.bounds_checks {
+        executor.check_bounds(None)?;
+    }
+    Ok(executor)
 }
 
 /// The OpenCL device that `options` ask for; `None` if they ask for the CPU twin.

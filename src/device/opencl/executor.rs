@@ -5,6 +5,8 @@ use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::Arc;
 
+use super::bounds_table::BoundsTable;
+use crate::device::bounds;
 use crate::device::executor::{Executor, ExecutorInfo, MemoryLimits};
 use crate::device::frame_memory::{FrameBuffer, FrameHandle, FrameInputs, FrameSizes};
 use crate::device::kernels::{self, Mutation};
@@ -15,7 +17,7 @@ use crate::device::opencl::{
 };
 use crate::device::profiles::Choices;
 use crate::device::stage::{Binding, Items, Kernel, LAUNCHES, Program, Stage};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::layout::{self, BuildFlavour, FrameParams, Traversal};
 use crate::monitor::Monitor;
 use crate::prepare::{PreparedScene, Shading};
@@ -41,6 +43,8 @@ pub struct OpenClExecutor {
     /// On contexts before this one.
     peak_before: u64,
     monitor: Monitor,
+    /// With bounds checks in kernels.
+    bounds: Option<BoundsTable>,
 }
 
 /// A scene in the device's memory.
@@ -134,9 +138,21 @@ impl OpenClExecutor {
             program_ms: 0.0,
             peak_before: 0,
             monitor: Monitor::default(),
+            bounds: None,
         };
         executor.fit_scans();
         executor
+    }
+
+    /// From now on kernels have bounds checks (see [`bounds`]), and a launch that left a buffer is
+    /// [`Error::LaunchBeyondBuffer`]. For a control a buffer may be told to have fewer words than it has.
+    ///
+    /// # Errors
+    /// A failing call.
+    pub fn check_bounds(&mut self, understated: Option<(FrameBuffer, usize)>) -> Result<()> {
+        self.bounds = Some(BoundsTable::new(&self.context, understated)?);
+        self.kernels.clear();
+        Ok(())
     }
 
     /// Lowers the work-group of scans to what the driver allows their kernel, which it says once that is built.
@@ -217,7 +233,10 @@ impl OpenClExecutor {
         if flavour.strict && self.context.limits().correctly_rounded_divide_sqrt {
             options.push_str(" -cl-fp32-correctly-rounded-divide-sqrt");
         }
-        let source = kernels::program_source(program, self.mutation.as_ref());
+        let mut source = kernels::program_source(program, self.mutation.as_ref());
+        if self.bounds.is_some() {
+            source = bounds::with_checks(&source).map_err(|why| Error::argument("bounds checks", why))?;
+        }
         let built =
             self.context.program(&ProgramSource { name: program.name(), source: &source, options: &options })?;
         for entry in program.kernels() {
@@ -369,14 +388,19 @@ impl Executor for OpenClExecutor {
         if global.contains(&0) {
             return Ok(());
         }
+        let mut args = arguments(launch, scene, frame);
+        if let Some(table) = &self.bounds {
+            args.insert(0, table.prepare(&self.context, launch)?);
+        }
         self.context.launch(&DeviceLaunch {
             label: kernel.label(stage),
             kernel: device_kernel,
-            args: &arguments(launch, scene, frame),
+            args: &args,
             global,
             local: Some(local),
             barrier,
-        })
+        })?;
+        self.bounds.as_ref().map_or(Ok(()), |table| table.look(&self.context, launch))
     }
 
     fn read(&mut self, frame: &FrameHandle, buffer: FrameBuffer, range: Range<usize>) -> Result<Vec<u32>> {
@@ -421,6 +445,9 @@ impl Executor for OpenClExecutor {
         self.kernels.clear();
         self.peak_before = self.peak_bytes();
         self.context = self.context.reopen()?;
+        if let Some(table) = &self.bounds {
+            self.bounds = Some(table.again(&self.context)?);
+        }
         self.context.watch(&self.monitor);
         self.is_lost = false;
         let slices = self.context.slice_ms().map_or("whole".into(), |ms| format!("of {ms:.1} ms"));

@@ -5,6 +5,7 @@
 //! [`Program`]s and launches. It knows the device's limits (or those of a [`Profile`], which a desktop obeys like the
 //! phone would), accounts for memory, splits long launches into slices, and measures them.
 
+mod bounds_table;
 mod buffer;
 pub mod build_log;
 mod cache;
