@@ -8,5 +8,6 @@ pub mod command;
 pub mod contexts;
 pub mod fixtures;
 pub mod frames;
+pub mod fuzz;
 pub mod masks;
 pub mod option_space;
