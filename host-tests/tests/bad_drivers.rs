@@ -10,8 +10,8 @@ use std::process::Command;
 use std::sync::{Arc, OnceLock};
 
 use rarefy::{
-    CacheFolder, DeviceChoice, DeviceOptions, Error, Keep, Monitor, PreparedScene, RenderOptions, Renderer, Shading,
-    builtin,
+    CacheFolder, DeviceChoice, DeviceOptions, Error, Keep, Method, Monitor, PreparedScene, RenderOptions, Renderer,
+    Shading, builtin,
 };
 use rarefy_host_tests::clang::clang;
 use rarefy_host_tests::command::root;
@@ -139,9 +139,10 @@ fn child_start() {
         }
     };
     println!("device: {}", renderer.info().name);
+    let method = if is("METHOD", "paper") { Method::paper() } else { Method::balanced() };
     let mut is_right = true;
     for (width, height) in [(40, 30), (1, 1), (2, 1), (1, 5), (33, 7)] {
-        let size = RenderOptions { width, height, ..RenderOptions::default() };
+        let size = RenderOptions { width, height, method, ..RenderOptions::default() };
         let pixels = |renderer: &mut Renderer| renderer.render(&size, Keep::default()).unwrap().pixels;
         is_right &= pixels(&mut renderer) == pixels(&mut right);
     }
@@ -296,6 +297,23 @@ fn a_compiler_that_fails_in_kernel_creation_is_a_build_that_fails() {
     let second = driver.start();
     second.draws_on("cpu", &["as an earlier start found"]);
     assert_eq!(second.builds, [""; 0]);
+}
+
+#[test]
+fn a_program_that_a_later_frame_needs_may_fail_as_well() {
+    let Some(driver) = Driver::with("never-builds") else { return };
+    let driver = driver.set("BAD_DRIVER_PROGRAM", "__kernel void correct_sweep(").set("METHOD", "paper");
+    for _ in 0..2 {
+        driver.start().draws_on("cpu", &["device: ", "on the CPU twin from here on: kernel program `correct_sweep`"]);
+    }
+    let refused = driver.start_with(&[("DEVICE", "opencl")]);
+    assert!(refused.status == Some(101) && refused.text.contains("`correct_sweep` does not build"), "{refused:?}");
+    // A method that does without stays on the device.
+    driver.start_with(&[("METHOD", "balanced")]).draws_on("opencl", &[]);
+    let driver = driver.set("BAD_DRIVER", "compiler-aborts").set("BAD_DRIVER_VERSION", "2");
+    assert_eq!(driver.start().status, None);
+    driver.start().draws_on("cpu", &["passed over: crashed: ", "building program `correct_sweep`"]);
+    driver.start_with(&[("METHOD", "balanced")]).draws_on("opencl", &[]);
 }
 
 #[test]

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use rarefy::Result;
 use rarefy::internal::device::opencl::executor::{scan_group, work_group};
-use rarefy::internal::device::opencl::{DeviceFound, Limits, Profile, discover};
+use rarefy::internal::device::opencl::{DeviceFound, Limits, Profile, discover, library};
 use rarefy::internal::device::profiles::MemoryPath;
 use rarefy::internal::device::stage::Stage;
 use rarefy::internal::render::renderer::DEFAULT_BUDGET_BYTES;
@@ -43,6 +43,11 @@ pub fn run(args: &DevicesArgs) -> Result<()> {
     }
     if discovery.devices.is_empty() {
         say(json, "no usable OpenCL device; pictures are drawn by the CPU twin (--device cpu)");
+    }
+    let search = library::find(None);
+    if let Some(accepted) = &search.accepted {
+        say(json, &format!("library: {accepted}"));
+        search.reasons().iter().for_each(|reason| say(json, &format!("library not used: {reason}")));
     }
     for skipped in &discovery.skipped {
         say(json, &format!("skipped: {skipped}"));
