@@ -11,7 +11,7 @@ with_header() {
     case $first in '#!'*) first=$second ;; esac
     # A carriage return at the end would be a different line.
     case $1 in
-    *.rs | *.cl | *.clh | *.h | *.c | *.java) [ "$first" = '// SPDX-License-Identifier: MIT OR Apache-2.0' ] ;;
+    *.rs | *.cl | *.clh | *.h | *.c | *.java | *.kt | *.kts) [ "$first" = '// SPDX-License-Identifier: MIT OR Apache-2.0' ] ;;
     *) [ "$first" = '# SPDX-License-Identifier: MIT OR Apache-2.0' ] ;;
     esac
 }
@@ -27,7 +27,7 @@ while IFS= read -r -d '' file; do
     [ -f "$file" ] || continue # removed, not yet committed
     count=$((count + 1))
     with_header "$file" || { echo "$file: no licence header" >&2; missing=$((missing + 1)); }
-done < <(git ls-files -z -- '*.rs' '*.cl' '*.clh' '*.h' '*.java' '*.c' '*.sh' '*.toml' .ci/run)
+done < <(git ls-files -z -- '*.rs' '*.cl' '*.clh' '*.h' '*.c' '*.java' '*.kt' '*.kts' '*.sh' '*.toml' .ci/run)
 [ $count -gt 0 ] || { echo "licence headers: git lists no file" >&2; exit 1; }
 [ $missing = 0 ] || { echo "licence headers: $missing of $count files lack one" >&2; exit 1; }
 echo "licence headers: all $count files have one"

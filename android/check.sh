@@ -1,21 +1,26 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT OR Apache-2.0
-# Cross-compiles and links librarefy_jni.so for both Android ABIs without an NDK, and checks what came out.
+# Cross-compiles and links librarefy_jni.so for the Android ABIs without an NDK, checks what came out, runs it in an ARM Java VM
+# under qemu, and makes and checks the AAR.
 #
-#   android/check.sh               all checks; `--self-check` is part of it
+#   android/check.sh               all checks; `--self-check` and `--aar` are part of it
 #   android/check.sh --self-check  only: do the checks notice what they are there for? (seconds, no Rust)
+#   android/check.sh --aar         only: builds the AAR with its sources, documentation and POM, and has it consumed
 #
 # How it works without an NDK: the linker gets stub libraries that define nothing but the symbols in stubs/*.txt, all of
 # which Android has had since API 21 (Android 5). With --no-undefined, whatever else the code needs is a link error, so
-# the stubs are the test of the API level. The file is not fit to ship: an NDK links its unwinder statically, while here
-# `libunwind.so`, which no phone has, stays a needed library. Everything else about the file is as it would be.
+# the stubs are the test of the API level. The unwinder is LLVM's, linked statically as an NDK does (check/unwind.sh).
 set -euo pipefail
 cd "$(dirname "$0")/.."
 . .ci/lib.sh
+. android/check/unwind.sh
+. android/check/qemu.sh
+. android/check/java.sh
+. android/check/aar.sh
 
 api=21
 page=0x4000 # 16 KiB pages: required of new apps since November 2025; 4 KiB phones take them as well
-size_limit=$((4 * 1024 * 1024))
+size_limit=$((3 * 1024 * 1024))
 work=$PWD/target-android
 abis="arm64-v8a armeabi-v7a"
 
@@ -40,10 +45,10 @@ make_stubs() { # ABI FROM-FOLDER TO-FOLDER
     done
 }
 
-make_linker() { # ABI STUBS FILE: the compiler driver that cargo links with
+make_linker() { # ABI STUBS FILE [FOLDER]: the compiler driver that cargo links with; the folder has the unwinder
     cat >"$3" <<EOT
 #!/bin/sh
-exec clang --target=$(clang_target "$1") -fuse-ld=lld -nostdlib "-L$2" -Wl,-z,max-page-size=$page -Wl,--no-undefined -Wl,--error-limit=0 "\$@"
+exec clang --target=$(clang_target "$1") -fuse-ld=lld -nostdlib "-L$2" "-L${4-$2}" -Wl,-z,max-page-size=$page -Wl,--no-undefined -Wl,--error-limit=0 "\$@"
 EOT
     chmod +x "$3"
 }
@@ -59,10 +64,9 @@ elf_problems() { # FILE ABI STUB-LISTS SIZE-LIMIT
     # What Java sees, and nothing that could clash with another library's symbols.
     names=$(awk '$1 != "UND" {print $3}' <<<"$symbols" | sort | tr '\n' ' ')
     [ "$names" = "JNI_OnLoad " ] || echo "exported symbols: ${names:-none }(should be JNI_OnLoad alone)"
-    # libunwind: see the head of this file.
     for name in $(sed -n 's/.*(NEEDED).*\[\(.*\)\]/\1/p' <<<"$dynamic"); do
         case $name in
-        libc.so | libm.so | libdl.so | liblog.so | libandroid.so | libjnigraphics.so | libunwind.so) ;;
+        libc.so | libm.so | libdl.so | liblog.so | libandroid.so | libjnigraphics.so) ;;
         *) echo "it needs $name, which not every phone has or lets an app open" ;;
         esac
     done
@@ -163,23 +167,28 @@ EOT
     say "self-check: every check notices what it is there for"
 }
 
+library_file() { echo "$work/$(rust_target "$1")/release/librarefy_jni.so"; }
+probe_file() { echo "$work/$(rust_target "$1")/release/examples/libguard_probe.so"; }
+
 build() {
     local abi variable targets=()
+    fetch_unwinder
     for abi in $abis; do
         rm -rf "$work/stubs/$abi"
         make_stubs "$abi" android/stubs "$work/stubs/$abi"
-        make_linker "$abi" "$work/stubs/$abi" "$work/cc-$abi"
+        make_unwinder "$abi" "$work/unwind/$abi"
+        make_linker "$abi" "$work/stubs/$abi" "$work/cc-$abi" "$work/unwind/$abi"
         variable=CARGO_TARGET_$(rust_target "$abi" | tr 'a-z-' 'A-Z_')_LINKER
         export "$variable=$work/cc-$abi"
         targets+=(--target "$(rust_target "$abi")")
     done
-    cargo build --quiet --release --package rarefy-jni --lib -Zbuild-std --target-dir "$work" "${targets[@]}"
+    cargo build --quiet --release --package rarefy-jni --lib --example guard_probe -Zbuild-std --target-dir "$work" "${targets[@]}"
 }
 
 check_files() {
     local abi file problems bad=0
     for abi in $abis; do
-        file=$work/$(rust_target "$abi")/release/librarefy_jni.so
+        file=$(library_file "$abi")
         problems=$(elf_problems "$file" "$abi" android/stubs $size_limit)
         llvm-strip -o "$file.stripped" "$file"
         say "$abi: $(wc -c <"$file.stripped") bytes stripped; needs $(llvm-readelf -d "$file" |
@@ -201,7 +210,20 @@ check_tree() {
     [ -n "$(tree rarefy x86_64-unknown-linux-gnu | desktop_crates)" ] || fail "the search for the desktop's crates finds none where they are"
 }
 
+run_files() {
+    local abi
+    need_packages "running the files" qemu-user || fail "running the files needs qemu-user"
+    java_for_qemu
+    draw_on_desktop
+    for abi in $abis; do
+        fetch_foreign_java "$abi"
+        make_stand_ins "$abi"
+        run_in_qemu "$abi"
+    done
+}
+
 need_packages "the Android check" clang lld llvm || fail "the Android check needs clang, lld and llvm"
+have javac || need_packages "the Android check" default-jdk-headless || fail "the Android check needs a JDK"
 mkdir -p "$work"
 case ${1-} in
 "")
@@ -210,7 +232,15 @@ case ${1-} in
     section "Android: build ($("$RUSTC" --version))" build
     section "Android: ELF files" check_files
     section "Android: crates" check_tree
+    section "Android: the files in an ARM Java VM" run_files
+    section "Android: Java" check_java
+    section "Android: AAR" check_aar
     ;;
 --self-check) section "Android: self-check" self_check ;;
-*) fail "usage: android/check.sh [--self-check]" ;;
+--aar)
+    need_rust_with_source "the Android check"
+    section "Android: build ($("$RUSTC" --version))" build
+    section "Android: AAR" check_aar
+    ;;
+*) fail "usage: android/check.sh [--self-check | --aar]" ;;
 esac

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! The JNI library in a desktop Java VM: it loads, registers its natives, and turns errors and panics into exceptions.
+//! The Java API in a desktop Java VM, with the library that cargo built: pictures, misuse, threads, errors, panics.
 //!
-//! Java runs as a child process with `-Xcheck:jni`, which reports broken JNI rules. The libraries must have been built:
-//! `cargo build --workspace` makes the library and `cargo test --workspace` the probe; `./test.sh` runs both.
-//! Without a JDK these tests fail, unless the environment says `RAREFY_TEST_JVM=none`.
+//! The tests themselves are Java programs, in `android/library/src/test`; android/check.sh runs the same ones with the
+//! library that ships. Java runs as a child process with `-Xcheck:jni`, which reports broken JNI rules.
+//! The libraries must have been built: `cargo build --workspace` makes the library and `cargo test --workspace` the probe;
+//! `./test.sh` runs both. Without a JDK these tests fail, unless the environment says `RAREFY_TEST_JVM=none`.
 
 #![allow(clippy::unwrap_used)]
 
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::time::SystemTime;
+use std::sync::OnceLock;
 
-/// The repository's root.
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().to_path_buf()
-}
+use rarefy_host_tests::command::{rarefy_in, root};
+use rarefy_host_tests::frames::no_opencl;
 
 /// The Java tools of this machine.
 struct Jdk {
@@ -46,30 +46,87 @@ impl Jdk {
         Some(Jdk { javac, java: bin.join("java"), libjsig })
     }
 
-    /// Compiles `sources` into `classes`, with every warning an error, as Java 8 (what Android takes everywhere).
+    /// Compiles `sources` into `classes`, with warnings being errors, as Java 8 (what Android takes everywhere).
     fn compile(&self, sources: &[PathBuf], classes: &Path) {
         let mut javac = Command::new(&self.javac);
-        javac.args(["--release", "8", "-Xlint:all,-options", "-Werror", "-d"]).arg(classes).args(sources);
-        let output = javac.output().unwrap();
+        // `try`: the tests close tracers early on purpose.
+        javac
+            .args(["--release", "8", "-Xlint:all,-options,-try", "-Werror", "-cp"])
+            .arg(classes)
+            .arg("-d")
+            .arg(classes);
+        let output = javac.args(sources).output().unwrap();
         assert!(output.status.success(), "{javac:?}\n{}", String::from_utf8_lossy(&output.stderr));
     }
 
-    /// Runs `class` under `-Xcheck:jni`; returns all that it printed.
-    fn run(&self, classes: &Path, library: &Path, class: &str) -> String {
+    /// Runs a class of `dev.rarefy` under `-Xcheck:jni`; returns all that it printed.
+    fn run(&self, classes: &Path, class: &str, arguments: &[&str], variables: &[(&str, &str)]) -> String {
         let mut java = Command::new(&self.java);
         if let Some(libjsig) = &self.libjsig {
             java.env("LD_PRELOAD", libjsig);
         }
-        let mut property = std::ffi::OsString::from("-Ddev.rarefy.library=");
-        property.push(library);
-        java.args(["-Xcheck:jni", "-Xshare:auto", "-Dfile.encoding=UTF-8"]).arg(property);
-        java.arg("-cp").arg(classes).arg(class);
-        let output = java.output().unwrap();
+        let property = |name: &str, file: &str| {
+            let mut property = OsString::from(format!("-D{name}="));
+            property.push(built_library(file));
+            property
+        };
+        java.args(["-Xcheck:jni", "-Xshare:auto", "-Xmx512m", "-Dfile.encoding=UTF-8"]);
+        java.arg(property("dev.rarefy.library", "librarefy_jni.so"));
+        java.arg(property("dev.rarefy.probe", "examples/libguard_probe.so"));
+        java.arg(format!("-Ddev.rarefy.classes={}", self::classes(self).display()));
+        java.arg("-cp").arg(classes).arg(format!("dev.rarefy.{class}")).args(arguments);
+        let output = java.envs(variables.iter().copied()).output().unwrap();
         let mut text = String::from_utf8_lossy(&output.stdout).into_owned();
         text += &String::from_utf8_lossy(&output.stderr);
         assert!(output.status.success(), "{java:?}: {}\n{text}", output.status);
         text
     }
+
+    /// Runs one of the Java tests, which must come to its end and break no rule of JNI.
+    #[track_caller]
+    fn test(&self, class: &str, arguments: &[&str], variables: &[(&str, &str)]) -> String {
+        self.test_in(classes(self), class, arguments, variables)
+    }
+
+    /// Runs one of the Java tests in a class loader like an app's.
+    #[track_caller]
+    fn test_as_app(&self, class: &str, arguments: &[&str]) {
+        let folder = tempfile::tempdir().unwrap();
+        self.compile(&[root().join("android/library/src/test/java/dev/rarefy/ChildLoader.java")], folder.path());
+        self.test_in(folder.path(), "ChildLoader", &[&[class], arguments].concat(), &[]);
+    }
+
+    #[track_caller]
+    fn test_in(&self, classes: &Path, class: &str, arguments: &[&str], variables: &[(&str, &str)]) -> String {
+        let output = self.run(classes, class, arguments, variables);
+        assert!(output.lines().any(|line| line == "done"), "{output}");
+        assert!(jni_complaints(&output).is_empty(), "{output}");
+        output
+    }
+}
+
+/// The Java files in a folder; of the library those that do not need Android's classes.
+fn java_files(folder: &str) -> Vec<PathBuf> {
+    let files = root().join(folder).read_dir().unwrap().map(|entry| entry.unwrap().path());
+    let mut files: Vec<PathBuf> =
+        files.filter(|file| !std::fs::read_to_string(file).unwrap().contains("\nimport android.")).collect();
+    files.sort();
+    assert!(!files.is_empty(), "{folder}");
+    files
+}
+
+/// The library and its tests, compiled once.
+fn classes(jdk: &Jdk) -> &'static Path {
+    static CLASSES: OnceLock<tempfile::TempDir> = OnceLock::new();
+    let folder = CLASSES.get_or_init(|| {
+        let folder = tempfile::tempdir().unwrap();
+        let mut sources = java_files("android/library/annotations/org/jspecify/annotations");
+        sources.extend(java_files("android/library/src/main/java/dev/rarefy"));
+        sources.extend(java_files("android/library/src/test/java/dev/rarefy"));
+        jdk.compile(&sources, folder.path());
+        folder
+    });
+    folder.path()
 }
 
 /// A library that cargo built beside this test, not older than its sources.
@@ -85,9 +142,8 @@ fn built_library(name: &str) -> PathBuf {
     for folder in ["android/jni/src", "android/jni/examples"] {
         for source in root().join(folder).read_dir().unwrap() {
             let source = source.unwrap();
-            let changed: SystemTime = source.metadata().unwrap().modified().unwrap();
             let part_of_it = folder.ends_with("src") || name.contains("probe");
-            let stale = part_of_it && changed > built;
+            let stale = part_of_it && source.metadata().unwrap().modified().unwrap() > built;
             assert!(!stale, "{} is older than {}; {remedy}", library.display(), source.path().display());
         }
     }
@@ -107,124 +163,167 @@ fn java_file(folder: &Path, name: &str, text: &str) -> PathBuf {
     file
 }
 
-#[test]
-fn version_through_java() {
+/// A built-in scene as files.
+fn spheres(folder: &Path) -> String {
+    rarefy_in(folder, &["make-scene", "spheres", "-o", "spheres"], &[]).expect(0);
+    folder.join("spheres").to_str().unwrap().to_owned()
+}
+
+/// Java's pictures on `device` are those of the command.
+fn pictures_are_the_commands(device: &str) {
     let Some(jdk) = Jdk::find() else { return };
-    let library = built_library("librarefy_jni.so");
     let folder = tempfile::tempdir().unwrap();
-    let main = java_file(
-        folder.path(),
-        "VersionMain",
-        r#"package dev.rarefy;
-        final class VersionMain {
-            public static void main(String[] arguments) throws Exception {
-                Thread other = new Thread(() -> System.out.println("other thread: " + Native.version()));
-                other.start();
-                other.join();
-                System.out.println("version: " + Native.version());
-            }
-        }"#,
-    );
-    let native = root().join("android/library/src/main/java/dev/rarefy/Native.java");
-    jdk.compile(&[native, main], folder.path());
-    let output = jdk.run(folder.path(), &library, "dev.rarefy.VersionMain");
-    let version = env!("CARGO_PKG_VERSION");
-    let lines: Vec<&str> = output.lines().collect();
-    assert!(lines.contains(&format!("version: {version}").as_str()), "{output}");
-    assert!(lines.contains(&format!("other thread: {version}").as_str()), "{output}");
-    assert!(jni_complaints(&output).is_empty(), "{output}");
+    let scene = spheres(folder.path());
+    rarefy_in(folder.path(), &["bake", &scene, "-o", "baked"], &[]).expect(0);
+    let baked = folder.path().join("baked");
+    let arguments = [device, &scene, baked.to_str().unwrap(), folder.path().to_str().unwrap()];
+    let output = jdk.test("PictureTest", &arguments, &[]);
+    assert!(output.contains(&format!("device: {device}")), "{output}");
+    let paper = "--method paper --t-pos 0.01 --t-norm 0.95 --t-conv 0.1 --t-tex 0.25 --t-gcol 0.1 --disable-test gc \
+                 --correction object";
+    for (name, size, options) in [
+        ("balanced", "96x64", ""),
+        ("fast", "61x43", "--method fast --samples 2"),
+        ("paper", "96x64", paper),
+        ("full", "96x64", "--mode full --depth 2"),
+    ] {
+        let file = format!("{name}.png");
+        let mut arguments =
+            vec!["render", &scene, "-o", &file, "--size", size, "--device", device, "--build", "strict"];
+        arguments.extend(options.split_whitespace());
+        rarefy_in(folder.path(), &arguments, &[]).expect(0);
+        let wanted = image::open(folder.path().join(&file)).unwrap().to_rgba8().into_raw();
+        let got = std::fs::read(folder.path().join(name)).unwrap();
+        assert!(wanted == got, "{name}: Java's picture is not the command's");
+    }
 }
 
 #[test]
-fn a_class_that_does_not_fit_is_refused_with_the_reason() {
+fn pictures_on_the_cpu_are_the_commands() {
+    pictures_are_the_commands("cpu");
+}
+
+#[test]
+fn pictures_on_opencl_are_the_commands() {
+    if !no_opencl() {
+        pictures_are_the_commands("opencl");
+    }
+}
+
+#[test]
+fn whatever_is_done_wrong_gives_its_exception() {
     let Some(jdk) = Jdk::find() else { return };
-    let library = built_library("librarefy_jni.so");
     let folder = tempfile::tempdir().unwrap();
-    let main = java_file(
-        folder.path(),
-        "Native",
-        r#"package dev.rarefy;
-        final class Native {
-            static native int version();
-            public static void main(String[] arguments) {
-                try {
-                    System.load(System.getProperty("dev.rarefy.library"));
-                    System.out.println("loaded");
-                } catch (UnsatisfiedLinkError e) {
-                    System.out.println("refused: " + e.getMessage());
-                }
-            }
-        }"#,
-    );
-    jdk.compile(&[main], folder.path());
-    let output = jdk.run(folder.path(), &library, "dev.rarefy.Native");
-    let refused = output.lines().find(|line| line.starts_with("refused: ")).unwrap_or_else(|| panic!("{output}"));
-    assert!(refused.contains("dev/rarefy/Native") && refused.contains("version"), "{output}");
+    jdk.test("MisuseTest", &[folder.path().to_str().unwrap()], &[]);
+}
+
+#[test]
+fn the_camera_moves_as_it_says() {
+    let Some(jdk) = Jdk::find() else { return };
+    jdk.test("CameraTest", &[], &[]);
+}
+
+#[test]
+fn eight_threads_at_once_and_fifty_rounds() {
+    let Some(jdk) = Jdk::find() else { return };
+    jdk.test("ThreadsTest", &["cpu", "50"], &[]);
+}
+
+#[test]
+#[ignore = "long: a thousand rounds of opening, drawing and closing on the CPU and on OpenCL"]
+fn a_thousand_rounds_leave_nothing_behind() {
+    let Some(jdk) = Jdk::find() else { return };
+    jdk.test("ThreadsTest", &["cpu", "1000"], &[]);
+    if !no_opencl() {
+        jdk.test("ThreadsTest", &["opencl", "1000"], &[]);
+    }
+}
+
+#[test]
+fn without_opencl_the_cpu_draws_and_says_so() {
+    let Some(jdk) = Jdk::find() else { return };
+    let nowhere = tempfile::tempdir().unwrap();
+    jdk.test("NoOpenClTest", &[], &[("OCL_ICD_VENDORS", nowhere.path().to_str().unwrap())]);
 }
 
 #[test]
 fn errors_and_panics_become_exceptions_with_their_text() {
     let Some(jdk) = Jdk::find() else { return };
-    let library = built_library("examples/libguard_probe.so");
-    let folder = tempfile::tempdir().unwrap();
-    let probe = java_file(
-        folder.path(),
-        "GuardProbe",
-        r#"package dev.rarefy;
-        final class GuardProbe {
-            static native int fail(String text);
-            static native int panic(String text);
-            static native int callWithExceptionPending();
-
-            interface Call { int run(); }
-
-            static void report(String name, Call call) {
-                try {
-                    System.out.println(name + ": returned " + call.run());
-                } catch (Throwable e) {
-                    String text = String.valueOf(e.getMessage()).replace('\u00fc', '?').replace("\ud83d\ude42", "!");
-                    System.out.println(name + ": " + e.getClass().getName() + ": " + text);
-                }
-            }
-
-            public static void main(String[] arguments) {
-                System.load(System.getProperty("dev.rarefy.library"));
-                if (arguments.length == 0) {
-                    report("error", () -> fail("gr\u00fcn \ud83d\ude42"));
-                    report("panic", () -> panic("index 7"));
-                    report("null", () -> fail(null));
-                    report("again", () -> fail("still alive"));
-                }
-            }
-        }"#,
-    );
-    let bad = java_file(
-        folder.path(),
-        "BadMain",
-        r#"package dev.rarefy;
-        final class BadMain {
-            public static void main(String[] arguments) {
-                GuardProbe.main(new String[] {"quiet"});
-                GuardProbe.report("bad", () -> GuardProbe.callWithExceptionPending());
-            }
-        }"#,
-    );
-    jdk.compile(&[probe, bad], folder.path());
-
-    let output = jdk.run(folder.path(), &library, "dev.rarefy.GuardProbe");
-    let lines: Vec<&str> = output.lines().collect();
-    for wanted in [
-        "error: java.lang.IllegalStateException: --probe: gr?n !",
-        "panic: java.lang.Error: internal error in Rarefy: index 7",
-        "again: java.lang.IllegalStateException: --probe: still alive",
-    ] {
-        assert!(lines.contains(&wanted), "missing: {wanted}\n{output}");
-    }
-    assert!(lines.iter().any(|line| line.starts_with("null: java.lang.")), "{output}");
-    assert!(!output.contains("returned"), "{output}");
-    assert!(jni_complaints(&output).is_empty(), "{output}");
-
+    // On a phone, an app's classes are in a class loader of their own, which threads of Rust do not know.
+    jdk.test_as_app("GuardProbe", &[]);
+    jdk.test("GuardProbe", &[], &[]);
     // The control: a native method that breaks a rule of JNI is noticed.
-    let output = jdk.run(folder.path(), &library, "dev.rarefy.BadMain");
+    let output = jdk.run(classes(&jdk), "GuardProbe", &["broken"], &[]);
     assert!(!jni_complaints(&output).is_empty(), "{output}");
+}
+
+#[test]
+fn an_apps_class_loader_will_do() {
+    let Some(jdk) = Jdk::find() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    jdk.test_as_app("MisuseTest", &[folder.path().to_str().unwrap()]);
+}
+
+#[test]
+fn classes_that_do_not_fit_are_refused_with_the_reason() {
+    let Some(jdk) = Jdk::find() else { return };
+    let drifted = |class: &str, from: &str, to: &str| {
+        let folder = tempfile::tempdir().unwrap();
+        let copy = folder.path().join("dev/rarefy");
+        std::fs::create_dir_all(&copy).unwrap();
+        let mut sources = java_files("android/library/annotations/org/jspecify/annotations");
+        for file in java_files("android/library/src/main/java/dev/rarefy") {
+            let name = file.file_stem().unwrap().to_str().unwrap();
+            let mut text = std::fs::read_to_string(&file).unwrap();
+            if name == class {
+                assert!(text.contains(from), "{class}: {from}");
+                text = text.replace(from, to);
+            }
+            sources.push(java_file(&copy, name, &text));
+        }
+        sources.push(java_file(
+            &copy,
+            "Refused",
+            r#"package dev.rarefy;
+            final class Refused {
+                public static void main(String[] arguments) {
+                    try {
+                        System.out.println("loaded " + Native.version());
+                    } catch (UnsatisfiedLinkError e) {
+                        System.out.println("refused: " + e.getMessage());
+                    }
+                }
+            }"#,
+        ));
+        jdk.compile(&sources, folder.path());
+        jdk.run(folder.path(), "Refused", &[], &[])
+    };
+    let output = drifted("Native", "static native String version()", "static native String version()");
+    assert!(output.contains("loaded "), "{output}");
+    for (class, from, to, part) in [
+        ("Native", "static native void cancel(long handle)", "static native int cancel(long handle)", "cancel"),
+        ("Native", "[] readAsset(", "[] readAssets(", "readAsset"),
+        ("FrameStats", "double frameMillis,\n", "float frameMillis,\n", "<init>"),
+        ("ProgressListener", "float share", "double share", "onProgress"),
+    ] {
+        let output = drifted(class, from, to);
+        let refused = output.lines().find(|line| line.starts_with("refused: ")).unwrap_or_else(|| panic!("{output}"));
+        assert!(refused.contains(part), "{class}: {output}");
+    }
+}
+
+#[test]
+fn the_example_of_the_readme_runs() {
+    let Some(jdk) = Jdk::find() else { return };
+    let readme = std::fs::read_to_string(root().join("README.md")).unwrap();
+    let (_, rest) = readme.split_once("```java\n").expect("README has an example in Java");
+    let example = rest.split_once("```").unwrap().0;
+    assert_eq!(example.trim().lines().count(), 5, "README promises five lines: {example}");
+    let source = std::fs::read_to_string(root().join("android/library/src/test/java/dev/rarefy/Hello.java")).unwrap();
+    let lines = |text: &str| text.lines().map(|line| line.trim().to_owned()).collect::<Vec<_>>();
+    let (wanted, found) = (lines(example.trim()), lines(&source));
+    assert!(found.windows(5).any(|five| five == wanted), "Hello.java is not README's example: {example}");
+    let output = jdk.run(classes(&jdk), "Hello", &[], &[]);
+    assert!(output.contains("640x480 in ") && output.contains(" % traced"), "{output}");
+    assert!(jni_complaints(&output).is_empty(), "{output}");
 }

@@ -46,7 +46,7 @@ pub struct MemoryLimits {
 }
 
 /// A place where kernels run. Launches happen in order; reads wait for them.
-pub trait Executor {
+pub trait Executor: Send {
     /// What this is.
     fn info(&self) -> ExecutorInfo;
 

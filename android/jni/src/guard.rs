@@ -2,47 +2,21 @@
 //! The guard around every native method: an error or a panic becomes a Java exception and never crosses into the Java
 //! VM, which would end the process.
 
-use jni::errors::ErrorPolicy;
-use jni::strings::{JNIStr, JNIString};
-use jni::vm::{AttachConfig, AttachmentExceptionPolicy};
-use jni::{DEFAULT_LOCAL_FRAME_CAPACITY, Env, JavaVM, NativeMethod, jni_str};
 use std::any::Any;
-use std::fmt;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// Why a native method failed.
-#[derive(Debug)]
-pub enum Failure {
-    /// The Rarefy library refused or failed.
-    Rarefy(rarefy::Error),
-    /// A call into the Java VM failed.
-    Jni(jni::errors::Error),
-}
+use jni::errors::ErrorPolicy;
+use jni::objects::{JObject, JThrowable};
+use jni::strings::{JNIStr, JNIString};
+use jni::vm::{AttachConfig, AttachmentExceptionPolicy};
+use jni::{DEFAULT_LOCAL_FRAME_CAPACITY, Env, JValue, JavaVM, NativeMethod, jni_str};
 
-impl fmt::Display for Failure {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Failure::Rarefy(error) => error.fmt(f),
-            Failure::Jni(error) => error.fmt(f),
-        }
-    }
-}
+use crate::classes::{self, EXCEPTION};
+use crate::failure::{self, Failure};
 
-impl std::error::Error for Failure {}
-
-impl From<rarefy::Error> for Failure {
-    fn from(error: rarefy::Error) -> Self {
-        Failure::Rarefy(error)
-    }
-}
-
-impl From<jni::errors::Error> for Failure {
-    fn from(error: jni::errors::Error) -> Self {
-        Failure::Jni(error)
-    }
-}
-
-/// Throws `IllegalStateException` for an error and `java.lang.Error` for a panic, with the whole text of either.
+/// Throws what fits a failure, and `java.lang.Error` for a panic, with the whole text of either: `RayTracerException` for
+/// what the library refused, `IllegalStateException` for a closed tracer, `IllegalArgumentException` and
+/// `NullPointerException` for arguments. An exception that is pending already stays: it names the cause.
 ///
 /// The policies that `jni` brings lose the text of formatted panics, among them every failed bounds check.
 pub struct Guard;
@@ -55,7 +29,23 @@ impl<T: Default> ErrorPolicy<T, Failure> for Guard {
         _captures: &mut (),
         failure: Failure,
     ) -> jni::errors::Result<T> {
-        throw(env, jni_str!("java/lang/IllegalStateException"), &failure.to_string());
+        if env.exception_check() {
+            return Ok(T::default());
+        }
+        let text = failure.to_string();
+        match &failure {
+            Failure::Rarefy(error) => {
+                throw_coded(env, failure::code(error), failure::place(error).as_deref(), &text, None);
+            }
+            Failure::Asset { name, cause } => throw_coded(env, "IO", Some(name), &text, Some(cause)),
+            Failure::Target(_) => throw_coded(env, "TARGET_LOST", None, &text, None),
+            Failure::State(_) => throw(env, jni_str!("java/lang/IllegalStateException"), &text),
+            Failure::Argument(_) => throw(env, jni_str!("java/lang/IllegalArgumentException"), &text),
+            Failure::Jni(jni::errors::Error::NullPtr(_)) => {
+                throw(env, jni_str!("java/lang/NullPointerException"), &text);
+            }
+            Failure::Jni(_) => throw(env, jni_str!("java/lang/IllegalStateException"), &text),
+        }
         Ok(T::default())
     }
 
@@ -80,6 +70,26 @@ fn panic_text(payload: &(dyn Any + Send)) -> &str {
     }
 }
 
+/// Makes a `RayTracerException` pending; where that fails, for want of memory say, an `IllegalStateException`.
+fn throw_coded(env: &mut Env<'_>, code: &str, place: Option<&str>, text: &str, cause: Option<&JThrowable<'static>>) {
+    let made = (|| {
+        let Some(classes) = classes::get() else { return Err(jni::errors::Error::UninitializedJavaVM) };
+        let code = JObject::from(env.new_string(code)?);
+        let place = place.map_or(Ok(JObject::null()), |place| env.new_string(place).map(JObject::from))?;
+        let message = JObject::from(env.new_string(text)?);
+        let none = JObject::null();
+        let cause: &JObject<'_> = cause.map_or(&none, |cause| cause);
+        let arguments =
+            [JValue::Object(&code), JValue::Object(&place), JValue::Object(&message), JValue::Object(cause)];
+        let exception = env.new_object(&classes.exception, &EXCEPTION.signature, &arguments)?;
+        env.cast_local::<JThrowable<'_>>(exception)
+    })();
+    match made.and_then(|exception| env.throw(exception)) {
+        Ok(()) | Err(jni::errors::Error::JavaException) if env.exception_check() => {}
+        _ => throw(env, jni_str!("java/lang/IllegalStateException"), text),
+    }
+}
+
 /// Makes an exception pending, unless one is: the first one names the cause.
 fn throw(env: &mut Env<'_>, class: &JNIStr, text: &str) {
     if env.exception_check() {
@@ -92,7 +102,8 @@ fn throw(env: &mut Env<'_>, class: &JNIStr, text: &str) {
     }
 }
 
-/// Registers `methods` on the Java class `class` (with slashes): the whole work of a `JNI_OnLoad`.
+/// Looks up the classes that Rust uses and registers `methods` on the Java class `class` (with slashes): the whole work of
+/// a `JNI_OnLoad`.
 ///
 /// Returns the JNI version that the library needs, or `JNI_ERR` with a pending `UnsatisfiedLinkError` that says why.
 ///
@@ -107,10 +118,13 @@ pub unsafe fn register(vm: *mut jni::sys::JavaVM, class: &JNIStr, methods: &[Nat
         // The default policy would swallow the exception that is to stay pending.
         let config = || AttachConfig::new().exceptions_policy(AttachmentExceptionPolicy::Ignore);
         vm.attach_current_thread_with_config(config, Some(DEFAULT_LOCAL_FRAME_CAPACITY), |env| {
-            let registered = env.find_class(class).and_then(|class| {
-                // SAFETY: the caller vouches for static or not; the macro that made the table vouches for the rest.
-                unsafe { env.register_native_methods(&class, methods) }
-            });
+            let registered = env
+                .find_class(class)
+                .and_then(|class| {
+                    // SAFETY: the caller vouches for static or not; the macro that made the table vouches for the rest.
+                    unsafe { env.register_native_methods(&class, methods) }
+                })
+                .and_then(|()| classes::load(env));
             if let Err(error) = &registered {
                 let text = format!("librarefy_jni does not fit the Java class {class}: {error}");
                 log::error!("{text}");

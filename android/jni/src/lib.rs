@@ -2,22 +2,23 @@
 //! The JNI library: a thin bridge from the Java package `dev.rarefy` to the Rarefy library.
 //!
 //! `JNI_OnLoad` is the only exported symbol. It registers every native method of `dev.rarefy.Native` by name and
-//! signature, so a Java class that does not fit is refused when the library is loaded, not at some later call.
+//! signature, and looks up every class that Rust uses, so that Java classes that do not fit are refused when the library
+//! is loaded, not at some later call.
 
+#[cfg(target_os = "android")]
+mod android;
+mod classes;
+mod failure;
 mod guard;
+mod listeners;
+mod natives;
+mod picture;
+mod session;
+mod settings;
 
-use guard::{Failure, Guard};
-use jni::objects::{JClass, JString};
-use jni::{Env, NativeMethod, jni_str, native_method};
 use std::ffi::c_void;
 
-/// The native methods of `dev.rarefy.Native`.
-const METHODS: &[NativeMethod] = &[native_method! { error_policy = Guard, static fn version() -> JString }];
-
-/// `Native.version()`: the version of the native library, such as `0.1.0`.
-fn version<'local>(env: &mut Env<'local>, _class: JClass<'local>) -> Result<JString<'local>, Failure> {
-    Ok(JString::from_str(env, env!("CARGO_PKG_VERSION"))?)
-}
+use jni::jni_str;
 
 /// Called by the Java VM when the library is loaded: registers the native methods.
 ///
@@ -30,5 +31,5 @@ fn version<'local>(env: &mut Env<'local>, _class: JClass<'local>) -> Result<JStr
 pub unsafe extern "system" fn JNI_OnLoad(vm: *mut jni::sys::JavaVM, _reserved: *mut c_void) -> jni::sys::jint {
     // SAFETY: the Java VM calls this function with its own valid pointer; each function in METHODS is static, as is its
     // declaration in Native.java, and `native_method!` made its signature from the function's types.
-    unsafe { guard::register(vm, jni_str!("dev/rarefy/Native"), METHODS) }
+    unsafe { guard::register(vm, jni_str!("dev/rarefy/Native"), natives::METHODS) }
 }
