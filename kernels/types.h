@@ -34,7 +34,7 @@ typedef struct {
   uint plane_pitch;     // words of one attribute plane: block * block * phase_width * phase_height
   uint light_count;     // at most 32
   uint depth_limit;     // most secondary rays in a chain, straight ones through panes not counted
-  float epsilon;        // offset of secondary and shadow rays along the geometric normal, scene units
+  float epsilon;        // thickness of the tree's cells around flat surfaces; anchor builds: offset of secondary rays
   uint window_begin;    // first row that the buffers hold, a multiple of block
   uint window_end;      // row behind the last that they hold
   uint interior_begin;  // rows of the window that step4 may trace; the others are context for checks and correction
@@ -115,7 +115,9 @@ typedef struct {
   uint pad0;
 } TriangleShading;
 
-// Every global pointer a ray needs. A triangle is three float4 (corner, edge, edge); the first w holds TRIANGLE_* bits.
+// Every global pointer a ray needs. A triangle is three float4, its corners. The first w holds TRIANGLE_* bits and, from
+// TRIANGLE_AXIS_SHIFT on, the axis along which its plane's normal is longest; the second and third w hold the normal's
+// components along the next axis and the one after, over that along the longest.
 #define SCENE_PARAMS                                                                                          \
   __constant FrameParams *frame, __constant Light *lights, __global const uint *nodes,                        \
       __global const uint *leaf_triangles, __global const float4 *triangles,                                  \

@@ -57,7 +57,8 @@
 //!
 //! [`Renderer::set_view`] moves the [`Camera`] and changes [`Light`]s and environment between frames. [`Keep`] says what a
 //! frame leaves beside its picture; [`draw_layer`] makes a picture of it: which pixels had rays, which test failed where,
-//! what they cost ([`Layer`]). [`FrameStats`] has the figures.
+//! what they cost ([`Layer`]). [`FrameStats`] has the figures. Positions count from [`Scene::origin`], which is 0 unless the
+//! scene's files lie far away from 0.
 //!
 //! # Watch and cancel
 //!

@@ -81,6 +81,7 @@ impl Field {
     pub const EXTENT: usize = 27;
     pub const EPSILON: usize = 28;
     pub const BOUNDS: usize = 29;
+    pub const ORIGIN: usize = 35;
 }
 
 /// Where an array lies in a file.
@@ -117,7 +118,7 @@ pub fn parts(bytes: &[u8]) -> Vec<Span> {
     };
     let mut start = HEAD;
     [
-        (140, 1),
+        (164, 1),
         (24, count(1)),
         (8, count(2)),
         (4, count(3)),

@@ -199,7 +199,8 @@ impl Drawn {
 }
 
 /// The built-in spheres with everything else that a kernel can meet: the clay sphere full of holes, its floor there
-/// twice (two objects, equal distances), a sphere of thin glass, and shadow bits of three lights.
+/// twice (two objects, equal distances), a sphere of thin glass, a sheet of two sides with glass in its plane, and shadow
+/// bits of three lights.
 pub fn zoo() -> Scene {
     let mut scene = builtin::to_scene("spheres").unwrap().into_parts();
     let find = |scene: &SceneParts, name: &str| scene.materials.iter().position(|m| m.name == name).unwrap();
@@ -242,6 +243,36 @@ pub fn zoo() -> Scene {
             scene.corner_normals.push(scene.corner_normals[id]);
             scene.corner_texcoords.push(scene.corner_texcoords[id]);
             scene.triangle_objects.push(bubble);
+        }
+    }
+    // A slanted sheet whose back comes first in the list, and a smaller piece of glass in its plane.
+    let paint = |name: &str, diffuse, surface| rarefy::internal::scene::Material {
+        name: name.into(),
+        diffuse,
+        surface,
+        ..Default::default()
+    };
+    let (red, blue) = (glam::Vec3::new(0.8, 0.1, 0.1), glam::Vec3::new(0.1, 0.1, 0.8));
+    let middle = glam::Vec3::new(1.0, 0.6, 2.0);
+    let (right, up) = (glam::Vec3::new(0.7, 0.05, 0.31), glam::Vec3::new(0.07, 0.5, -0.13));
+    let facing = if right.cross(up).z > 0.0 { 1.0 } else { -1.0 };
+    for (name, diffuse, surface, size, side) in [
+        ("back", blue, Surface::Opaque, 1.0, -facing),
+        ("front", red, Surface::Opaque, 1.0, facing),
+        ("label", blue, Surface::Glass, 0.61, facing),
+    ] {
+        scene.materials.push(paint(name, diffuse, surface));
+        scene.objects.push(Object { name: name.into(), material: scene.materials.len() as u32 - 1 });
+        let first = scene.positions.len() as u32;
+        let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+        scene.positions.extend(corners.map(|(x, y)| middle + right * (x * size) + up * (y * size)));
+        for [i, j, k] in [[0, 1, 2], [0, 2, 3]] {
+            let t = if side > 0.0 { [i, j, k] } else { [i, k, j] };
+            let normal = rarefy::internal::math::pack_normal(right.cross(up).normalize());
+            scene.triangles.push(t.map(|v| first + v));
+            scene.corner_normals.push([normal; 3]);
+            scene.corner_texcoords.push([glam::Vec2::ZERO; 3]);
+            scene.triangle_objects.push(scene.objects.len() as u32 - 1);
         }
     }
     let mut light = scene.view.lights[0];

@@ -128,7 +128,7 @@ fn target(bytes: &[u8], drawn: bool) -> &'static str {
             None if message.starts_with("view") => "view",
             None => "names",
             Some(place) => {
-                const PLACES: [&str; 8] = [
+                const PLACES: [&str; 9] = [
                     "triangles",
                     "nodes",
                     "leaf_triangles",
@@ -137,6 +137,7 @@ fn target(bytes: &[u8], drawn: bool) -> &'static str {
                     "textures",
                     "bounds",
                     "epsilon",
+                    "origin",
                 ];
                 let array = place.split('[').next().unwrap();
                 PLACES.iter().find(|known| **known == array).unwrap_or_else(|| panic!("unknown place {place}"))

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The twin's rays over the kd-tree find what a plain loop over all triangles finds.
 //!
-//! The loop uses the same Moeller-Trumbore test in floats, written anew. Where the two disagree, the ray is judged in
-//! doubles: only a hit that lies on the triangle's edge within the roundings of the float test may be missed.
+//! The loop uses the same test in floats, written anew. Where the two disagree, the ray is judged in doubles: only a hit
+//! that lies on the triangle's edge within the roundings of the float test may be missed. What the test itself finds is
+//! compared with doubles as well.
 #![allow(clippy::unwrap_used)]
+
+use std::collections::HashSet;
 
 use glam::{DVec3, Vec2, Vec3};
 use proptest::prelude::*;
@@ -11,26 +14,78 @@ use proptest::test_runner::{Config, RngSeed};
 use rarefy::internal::device::twin::SceneArgs;
 use rarefy::internal::device::twin::scene_args::Work;
 use rarefy::internal::device::twin::traverse::{any_hit, closest_hit};
-use rarefy::internal::layout::{NO_TRIANGLE, Traversal};
+use rarefy::internal::layout::{NO_TRIANGLE, TRIANGLE_AXIS_SHIFT, Traversal};
 use rarefy::internal::prepare::kdtree::KdNode;
 use rarefy::internal::scene::{Material, Scene, Surface};
 use rarefy_host_tests::fixtures::{Random, SceneBuilder, Stand, matte, v};
 
+/// The corners of a triangle, the least first.
 fn corners(scene: &Scene, id: usize) -> [Vec3; 3] {
-    scene.triangles()[id].map(|i| scene.positions()[i as usize])
+    let mut corners = scene.triangles()[id].map(|i| scene.positions()[i as usize]);
+    let key = |i: usize| corners[i].to_array();
+    let least = (0..3).min_by(|&i, &j| key(i).partial_cmp(&key(j)).unwrap()).unwrap();
+    corners.rotate_left(least);
+    corners
 }
 
-/// Moeller and Trumbore in floats: (t, u, v) where the line crosses the triangle.
-fn cross_float(o: Vec3, d: Vec3, [a, b, c]: [Vec3; 3]) -> Option<(f32, f32, f32)> {
-    let dot = |a: Vec3, b: Vec3| a.x * b.x + a.y * b.y + a.z * b.z;
-    let (e1, e2, s) = (b - a, c - a, o - a);
-    let (p, q) = (d.cross(e2), s.cross(e1));
-    // Weights are compared before the division: where they lie on an edge, that decides.
-    let (det, us, vs) = (dot(e1, p), dot(s, p), dot(d, q));
-    let inside = us * det >= 0.0 && us.abs() <= det.abs() && vs * det >= 0.0 && (us + vs).abs() <= det.abs();
-    let scale = 1.0 / det;
-    let t = dot(e2, q) * scale;
-    (inside && t > 0.0 && t < 1e30).then_some((t, us * scale, vs * scale))
+/// By triangle: another one has the same corners and faces the other side.
+fn one_sided(scene: &Scene) -> Vec<bool> {
+    let words = |p: Vec3| (p + Vec3::ZERO).to_array().map(f32::to_bits);
+    let key = |id: usize| corners(scene, id).map(words);
+    let there: HashSet<_> = (0..scene.triangles().len()).map(key).collect();
+    let behind = |id: usize| {
+        let [a, b, c] = key(id);
+        b != c && a != b && there.contains(&[a, c, b])
+    };
+    (0..scene.triangles().len()).map(behind).collect()
+}
+
+/// Where a ray crosses a triangle.
+#[derive(Debug, Clone, Copy)]
+struct Crossing {
+    /// Distance along the ray, and what roundings may make of it, both times `slope`.
+    ahead: f32,
+    error: f32,
+    slope: f32,
+    u: f32,
+    v: f32,
+    from_behind: bool,
+}
+
+/// The watertight test of Woop, Benthin and Wald in floats, with the plane of the triangle in doubles.
+fn cross_float(o: Vec3, d: Vec3, corners: [Vec3; 3]) -> Option<Crossing> {
+    let normal = {
+        let [a, b, c] = corners.map(|p| p.as_dvec3());
+        (b - a).cross(c - a)
+    };
+    if !normal.is_finite() || normal == DVec3::ZERO {
+        return None;
+    }
+    let longest = [0, 1, 2].into_iter().fold(0, |l, i| if normal[i].abs() >= normal[l].abs() { i } else { l });
+    let n = (normal / normal[longest]).as_vec3();
+    let z = (0..3).fold(0, |l, i| if d[i].abs() >= d[l].abs() { i } else { l });
+    let (x, y) = ((z + 1) % 3, (z + 2) % 3);
+    let inverse = 1.0 / d[z];
+    let shear = [d[x] * inverse, d[y] * inverse];
+    let [a, b, c] = corners.map(|p| {
+        let p = p - o;
+        [p[x] - shear[0] * p[z], p[y] - shear[1] * p[z]]
+    });
+    let side = |p: [f32; 2], q: [f32; 2]| q[0] * p[1] - q[1] * p[0];
+    let (wa, wb, wc) = (side(b, c), side(c, a), side(a, b));
+    let sum = wa + wb + wc;
+    let all = [wa, wb, wc];
+    if sum == 0.0 || all.iter().any(|w| *w < 0.0) && all.iter().any(|w| *w > 0.0) {
+        return None;
+    }
+    let from = corners[0] - o;
+    let across = n[z] + shear[0] * n[x] + shear[1] * n[y];
+    let height = (n.x * from.x + n.y * from.y + n.z * from.z) * inverse;
+    let ahead = if across < 0.0 { -height } else { height };
+    let error = (from.x.abs() + from.y.abs() + from.z.abs()) * inverse.abs() * 4.0 * f32::EPSILON;
+    let scale = 1.0 / sum;
+    let from_behind = (sum < 0.0) != (inverse < 0.0);
+    (ahead > error).then_some(Crossing { ahead, error, slope: across.abs(), u: wb * scale, v: wc * scale, from_behind })
 }
 
 /// The judge: how far inside the triangle the ray passes (least barycentric weight, negative outside), and how much of
@@ -47,6 +102,11 @@ fn judge(o: Vec3, d: Vec3, [a, b, c]: [Vec3; 3]) -> (f64, f64) {
     (u.min(v).min(1.0 - u - v), rounding)
 }
 
+/// Whether a crossing lies before `limit` for certain.
+fn before(c: &Crossing, limit: f32) -> bool {
+    c.ahead + c.error < limit * c.slope
+}
+
 fn on_edge(scene: &Scene, o: Vec3, d: Vec3, id: usize) -> bool {
     let (inside, rounding) = judge(o, d, corners(scene, id));
     inside <= rounding || inside.is_nan() || rounding.is_nan()
@@ -59,7 +119,10 @@ fn hole(scene: &Scene, id: usize, u: f32, v: f32) -> Option<bool> {
         return Some(false);
     };
     let texture = &scene.textures()[texture as usize];
-    let [a, b, c] = scene.corner_texcoords()[id].map(|t| t.as_dvec2());
+    let mut texcoords = scene.corner_texcoords()[id].map(|t| t.as_dvec2());
+    let first = scene.positions()[scene.triangles()[id][0] as usize];
+    texcoords.rotate_left((3 - corners(scene, id).iter().position(|&c| c == first).unwrap()) % 3);
+    let [a, b, c] = texcoords;
     let at = a + (b - a) * f64::from(u) + (c - a) * f64::from(v);
     let x = (at.x - at.x.floor()) * f64::from(texture.width);
     let y = (1.0 - (at.y - at.y.floor())) * f64::from(texture.height);
@@ -75,16 +138,21 @@ fn casts_no_shadow(scene: &Scene, id: usize) -> bool {
     matches!(surface, Surface::Glass | Surface::ThinGlass)
 }
 
-/// All hits of a ray, by the plain loop. `None` where a hit is too near to a texel's border to say.
-fn all_hits(scene: &Scene, o: Vec3, d: Vec3) -> Option<Vec<(f32, usize)>> {
+/// All hits of a ray, by the plain loop: distance, as rays see it, and triangle; and whether it casts a shadow before
+/// `limit`. `None` where a hit is too near to a texel's border to say.
+fn all_hits(scene: &Scene, one_sided: &[bool], o: Vec3, d: Vec3) -> Option<Vec<(f32, usize, Crossing)>> {
     let mut hits = Vec::new();
-    for id in 0..scene.triangles().len() {
-        if let Some((t, u, v)) = cross_float(o, d, corners(scene, id))
-            && !hole(scene, id, u, v)?
+    for (id, &is_one_sided) in one_sided.iter().enumerate() {
+        if let Some(c) = cross_float(o, d, corners(scene, id))
+            && !(is_one_sided && c.from_behind)
+            && !hole(scene, id, c.u, c.v)?
         {
-            hits.push((t, id));
+            // Glass lies a little behind.
+            let ahead = if casts_no_shadow(scene, id) { c.ahead + 2.0 * c.error } else { c.ahead };
+            hits.push((ahead / c.slope, id, c));
         }
     }
+    hits.retain(|hit| hit.0 < 1e30);
     Some(hits)
 }
 
@@ -109,13 +177,13 @@ impl Tally {
         self.wrong.extend(other.wrong);
     }
 
-    fn compare(&mut self, scene: &Scene, stand: &Stand, o: Vec3, d: Vec3, limit_share: f32) {
+    fn compare(&mut self, scene: &Scene, stand: &Stand, one_sided: &[bool], (o, d): (Vec3, Vec3), limit_share: f32) {
         self.rays += 1;
-        let Some(hits) = all_hits(scene, o, d) else {
+        let Some(hits) = all_hits(scene, one_sided, o, d) else {
             self.skipped += 1;
             return;
         };
-        let expected = hits.iter().copied().min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let expected = hits.iter().map(|h| (h.0, h.1)).min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         self.hits += usize::from(expected.is_some());
         let args = stand.args();
         let mut work = Work::default();
@@ -133,7 +201,7 @@ impl Tally {
             }
         }
         let blockers: Vec<usize> =
-            hits.iter().filter(|(t, id)| *t < limit && !casts_no_shadow(scene, *id)).map(|h| h.1).collect();
+            hits.iter().filter(|h| before(&h.2, limit) && !casts_no_shadow(scene, h.1)).map(|h| h.1).collect();
         let blocked = any_hit(&args, o, d, limit, &mut work);
         if blocked == blockers.is_empty() {
             if !blocked && blockers.iter().all(|&id| on_edge(scene, o, d, id)) {
@@ -144,9 +212,16 @@ impl Tally {
         }
     }
 
-    fn judge_closest(&mut self, scene: &Scene, o: Vec3, d: Vec3, hits: &[(f32, usize)], found: Option<(f32, usize)>) {
-        let nearer = |h: &&(f32, usize)| found.is_none_or(|f| (h.0, h.1) < f);
-        let real = found.is_none_or(|f| hits.contains(&f));
+    fn judge_closest(
+        &mut self,
+        scene: &Scene,
+        o: Vec3,
+        d: Vec3,
+        hits: &[(f32, usize, Crossing)],
+        found: Option<(f32, usize)>,
+    ) {
+        let nearer = |h: &&(f32, usize, Crossing)| found.is_none_or(|f| (h.0, h.1) < f);
+        let real = found.is_none_or(|f| hits.iter().any(|h| (h.0, h.1) == f));
         let mut missed = hits.iter().filter(nearer);
         if real && missed.all(|h| on_edge(scene, o, d, h.1)) {
             self.edges += 1;
@@ -159,6 +234,7 @@ impl Tally {
 /// Shoots `count` rays of every awkward kind.
 fn shoot(scene: &Scene, stand: &Stand, random: &mut Random, count: usize) -> Tally {
     let mut tally = Tally::default();
+    let one_sided = one_sided(scene);
     let tree = stand.prepared.tree();
     let (lo, hi) = (Vec3::from(tree.bounds_min), Vec3::from(tree.bounds_max));
     let size = (hi - lo).max_element();
@@ -193,7 +269,7 @@ fn shoot(scene: &Scene, stand: &Stand, random: &mut Random, count: usize) -> Tal
             6 => (lo - Vec3::splat(size * 0.3), (a - (lo - Vec3::splat(size * 0.3))).normalize_or(along)),
             _ => (inside, random.direction()),
         };
-        tally.compare(scene, stand, o, d, [0.5, 1.0, 1.000_001, 1.5, 40.0][i % 5]);
+        tally.compare(scene, stand, &one_sided, (o, d), [0.5, 1.0, 1.000_001, 1.5, 40.0][i % 5]);
     }
     tally
 }
@@ -274,6 +350,43 @@ fn degenerate_scenes() -> Vec<(&'static str, Scene)> {
             soup(random_triangles(4, 300, 0.2).into_iter().map(|t| t.map(|p| p * 0.01 + Vec3::splat(1000.0)))),
         ),
     ]
+}
+
+/// What the float test says of single triangles, needles among them, is what doubles say, but for its roundings.
+#[test]
+fn the_test_of_one_triangle_finds_what_doubles_find() {
+    let mut random = Random::new(2013);
+    let (mut inside_of, mut outside_of, mut worst) = (0, 0, 0.0f64);
+    for i in 0..200_000 {
+        let (a, b) = (random.point(10.0), random.point(10.0));
+        let width = [10.0, 0.1, 0.001][i % 3];
+        let corners = [a, b, b + random.point(width)];
+        let o = random.point(10.0) * [1.0, 50.0][i % 2];
+        let weights = [random.range(-0.2, 1.0), random.range(-0.2, 1.0)];
+        let d = (a + (b - a) * weights[0] + (corners[2] - a) * weights[1] - o).normalize_or(Vec3::X);
+        let ([a, b, c], o64, d64) = (corners.map(|p| p.as_dvec3()), o.as_dvec3(), d.as_dvec3());
+        let normal = (b - a).cross(c - a).normalize_or(DVec3::X);
+        let (inside, rounding) = judge(o, d, corners);
+        if rounding > 0.01 || inside.abs() <= rounding {
+            continue;
+        }
+        let (height, slope) = (normal.dot(a - o64), normal.dot(d64));
+        let found = cross_float(o, d, corners);
+        let is_ahead = height * slope.signum() > 2.0e-6 * (a - o64).length();
+        if inside > 0.0 && is_ahead {
+            let c = found.unwrap_or_else(|| panic!("{corners:?} from {o} along {d} is missed"));
+            // In sizes of what the error is measured in, across the plane.
+            let off = (f64::from(c.ahead / c.slope) - height / slope) * slope;
+            worst = worst.max(off.abs() / (a - o64).abs().element_sum());
+            inside_of += 1;
+        } else if inside < 0.0 {
+            assert!(found.is_none(), "{corners:?} from {o} along {d} is hit");
+            outside_of += 1;
+        }
+    }
+    println!("{inside_of} hits, {outside_of} misses, distances off by {worst:.2e} sizes");
+    assert!(inside_of > 20_000 && outside_of > 20_000);
+    assert!(worst < f64::from(4.0 * f32::EPSILON), "an error of {worst} sizes is not allowed for");
 }
 
 #[test]
@@ -381,7 +494,8 @@ fn the_comparison_notices_lost_triangles_and_wrong_flags() {
     let scene = cutout_scene(31);
     let mut stand = Stand::new(&scene, 1, 1, 0);
     for triangle in &mut stand.triangles {
-        triangle.corner[3] = 0.0;
+        let axis = triangle.corners[0][3].to_bits() >> TRIANGLE_AXIS_SHIFT << TRIANGLE_AXIS_SHIFT;
+        triangle.corners[0][3] = f32::from_bits(axis);
     }
     let tally = shoot(&scene, &stand, &mut Random::new(5), 400);
     assert!(tally.wrong.len() > 5, "flags: {:#?}", tally.wrong);
@@ -389,6 +503,6 @@ fn the_comparison_notices_lost_triangles_and_wrong_flags() {
     // One bit of t is a disagreement.
     let scene = soup([[Vec3::ZERO, v(1.0, 0.3, 0.2), v(0.1, 1.0, 0.9)]]);
     let mut stand = Stand::new(&scene, 1, 1, 0);
-    stand.triangles[0].corner[2] += 1e-6;
+    stand.triangles[0].corners[0][2] += 1e-6;
     assert!(!shoot(&scene, &stand, &mut Random::new(5), 100).wrong.is_empty());
 }

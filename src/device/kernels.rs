@@ -10,6 +10,7 @@ use crate::device::stage::Program;
 pub const FILES: &[(&str, &str)] = &[
     ("types.h", include_str!("../../kernels/types.h")),
     ("common/math.clh", include_str!("../../kernels/common/math.clh")),
+    ("common/triangle_test.clh", include_str!("../../kernels/common/triangle_test.clh")),
     ("common/walk_stack.clh", include_str!("../../kernels/common/walk_stack.clh")),
     ("common/walk_short.clh", include_str!("../../kernels/common/walk_short.clh")),
     ("common/kdtree.clh", include_str!("../../kernels/common/kdtree.clh")),

@@ -148,8 +148,12 @@ shared_constants! {
 
     /// Triangle bit: a cut-out texture may make holes.
     TRIANGLE_CUTOUT = 1;
-    /// Triangle bit: casts no shadow (glass).
-    TRIANGLE_NO_SHADOW = 2;
+    /// Triangle bit: glass, which casts no shadow, and yields to what is opaque in the same plane.
+    TRIANGLE_GLASS = 2;
+    /// Triangle bit: rays pass it from behind, where another one faces.
+    TRIANGLE_ONE_SIDED = 4;
+    /// The first of the two bits of a triangle that hold the axis of its plane.
+    TRIANGLE_AXIS_SHIFT = 8;
 
     /// "No texture" in a material.
     NO_TEXTURE = u32::MAX;
@@ -181,5 +185,15 @@ pub const FAR_AWAY: f32 = 1.0e30;
 pub const WEIGHT_CUTOFF: f32 = 1.0 / 512.0;
 /// A mirror or glass whose own colour has at most this weight has little light of its own.
 pub const LITTLE_OWN_LIGHT: f32 = 0.5;
+/// Error of a distance from a plane, in sizes (sums of absolute coordinates) of the vector to a point of that plane: five
+/// roundings of at most half a unit in the last place, and some reserve.
+pub const PLANE_ERROR: f32 = 4.0 * f32::EPSILON;
+/// Error of a position, in sizes of the corner and the edges that it is the sum of: four such roundings, and as much again
+/// for the rounding of the offset itself and for planes that are one in the file and not quite after rounding.
+pub const OFFSET_ERROR: f32 = 4.0 * f32::EPSILON;
+/// Most of such sizes that rays start from a position in order to leave the tree's cell around their surface.
+pub const OFFSET_MOST: f32 = 48.0 * f32::EPSILON;
+/// The part of the way to a light that is asked for things that cast a shadow: a light may lie on a surface.
+pub const SHADOW_REACH: f32 = 0.9999;
 /// Linear values below this are black; the float whose leading half word is [`SRGB_FIRST_BUCKET`].
 pub const SRGB_LEAST: f32 = f32::from_bits(SRGB_FIRST_BUCKET << 16);

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Build flavours: which variants of the kernels there are, and the options that make them.
 
-use super::constants::{FAR_AWAY, LITTLE_OWN_LIGHT, NO_OBJECT, SHARED_CONSTANTS, SRGB_LEAST, WEIGHT_CUTOFF};
+use super::constants::{
+    FAR_AWAY, LITTLE_OWN_LIGHT, NO_OBJECT, OFFSET_ERROR, OFFSET_MOST, PLANE_ERROR, SHADOW_REACH, SHARED_CONSTANTS,
+    SRGB_LEAST, WEIGHT_CUTOFF,
+};
 use crate::names::named;
 
 /// How a ray remembers the way through the kd-tree. All ways come to the same leaves in the same order, so that hits and
@@ -60,6 +63,10 @@ pub fn build_options(flavour: BuildFlavour) -> String {
         ("FAR_AWAY", FAR_AWAY),
         ("WEIGHT_CUTOFF", WEIGHT_CUTOFF),
         ("LITTLE_OWN_LIGHT", LITTLE_OWN_LIGHT),
+        ("PLANE_ERROR", PLANE_ERROR),
+        ("OFFSET_ERROR", OFFSET_ERROR),
+        ("OFFSET_MOST", OFFSET_MOST),
+        ("SHADOW_REACH", SHADOW_REACH),
         ("SRGB_LEAST", SRGB_LEAST),
     ] {
         let _ = write!(options, "-D{name}={value:?}f ");

@@ -106,16 +106,14 @@ pub struct Texture {
 }
 const _: () = assert!(size_of::<Texture>() == 16);
 
-/// A triangle as traversal reads it: a corner and two edges; `corner[3]` holds `TRIANGLE_*` bits.
+/// A triangle as traversal reads it.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 pub struct Triangle {
-    /// First corner; the fourth float's bits are flags.
-    pub corner: [f32; 4],
-    /// Second corner minus the first; the fourth float is unused.
-    pub edge1: [f32; 4],
-    /// Third corner minus the first; the fourth float is unused.
-    pub edge2: [f32; 4],
+    /// The corners. The first one's fourth float holds `TRIANGLE_*` bits and, from `TRIANGLE_AXIS_SHIFT` on, the axis
+    /// along which the plane's normal is longest; those of the others hold the normal's components along the next axis
+    /// and the one after, over that along the longest.
+    pub corners: [[f32; 4]; 3],
 }
 const _: () = assert!(size_of::<Triangle>() == 48);
 

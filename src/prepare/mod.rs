@@ -2,6 +2,7 @@
 //! From a scene to what kernels read: the kd-tree and flat arrays; baked files of both.
 
 mod baked;
+mod coincident;
 pub mod kdtree;
 mod prepared_scene;
 

@@ -3,14 +3,15 @@
 
 use std::time::Instant;
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 use crate::error::{Error, Remedy, Result};
 use crate::layout::{self, *};
 use crate::memory;
 use crate::monitor::Monitor;
-use crate::prepare::kdtree::{BuildOptions, KdTree};
-use crate::scene::{Scene, Surface, View};
+use crate::prepare::coincident;
+use crate::prepare::kdtree::{BuildOptions, KdTree, cell_epsilon};
+use crate::scene::{Scene, Surface, View, check::has_area};
 
 /// By which rules surfaces are shaded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -56,8 +57,11 @@ pub struct PreparedScene {
     pub(crate) tables: Vec<u32>,
     /// Shading rules that the arrays are made for.
     pub(crate) shading: Shading,
-    /// Offset of secondary and shadow rays, scene units.
+    /// Thickness of the tree's cells around flat surfaces, scene units; by the anchor's rules, the offset of secondary and
+    /// shadow rays.
     pub(crate) epsilon: f32,
+    /// Where positions count from.
+    pub(crate) origin: DVec3,
 }
 
 /// Triangles that are flattened before it is asked whether the work is to end.
@@ -84,7 +88,8 @@ impl PreparedScene {
         let materials = scene.materials().iter().map(|m| flatten_material(m, anchor)).collect();
         let object_materials = scene.objects().iter().map(|o| o.material).collect();
         let (triangles, triangle_shading) = flatten_triangles(scene, anchor, monitor)?;
-        let epsilon = if anchor { 1.0e-4 * diagonal(scene) } else { 1.0e-5 * scene.view().extent };
+        let largest = tree.bounds_min.iter().chain(&tree.bounds_max).fold(0.0f32, |m, v| m.max(v.abs()));
+        let epsilon = if anchor { 1.0e-4 * diagonal(scene) } else { 2.0 * cell_epsilon(largest) };
         Ok(PreparedScene {
             name: scene.name().into(),
             view: scene.view().clone(),
@@ -100,6 +105,7 @@ impl PreparedScene {
             tables: layout::tables(),
             shading,
             epsilon,
+            origin: scene.origin(),
         })
     }
 
@@ -111,6 +117,11 @@ impl PreparedScene {
     /// The view that came with the scene.
     pub fn view(&self) -> &View {
         &self.view
+    }
+
+    /// What was taken off all positions, those of the view too: [`Scene::origin`].
+    pub fn origin(&self) -> DVec3 {
+        self.origin
     }
 
     /// Number of triangles.
@@ -163,24 +174,29 @@ pub(crate) fn flatten_lights(lights: &[crate::scene::Light]) -> Vec<layout::Ligh
 }
 
 fn flatten_triangles(scene: &Scene, anchor: bool, monitor: &Monitor) -> Result<(Vec<Triangle>, Vec<TriangleShading>)> {
+    let mut one_sided = coincident::one_sided(scene, monitor)?.into_iter().peekable();
     let mut triangles = memory::with_room("the triangles", scene.triangles().len())?;
     let mut triangle_shading = memory::with_room("the triangles", scene.triangles().len())?;
     for (id, corners) in scene.triangles().iter().enumerate() {
         if id % TRIANGLES_AT_ONCE == 0 {
             monitor.check()?;
         }
-        let [a, b, c] = corners.map(|i| scene.positions()[i as usize]);
+        let mut corners = corners.map(|i| scene.positions()[i as usize]);
+        let first = coincident::least_corner(corners);
+        corners.rotate_left(first);
         let object = scene.triangle_objects()[id];
         let material = scene.objects()[object as usize].material;
-        let flags = if anchor { 0 } else { triangle_flags(&scene.materials()[material as usize]) };
-        triangles.push(Triangle {
-            corner: float4(a, f32::from_bits(flags)),
-            edge1: float4(b - a, 0.0),
-            edge2: float4(c - a, 0.0),
-        });
-        let [t0, t1, t2] = scene.corner_texcoords()[id];
+        let mut flags = if anchor { 0 } else { triangle_flags(&scene.materials()[material as usize]) };
+        if one_sided.next_if_eq(&(id as u32)).is_some() && !anchor {
+            flags |= TRIANGLE_ONE_SIDED;
+        }
+        triangles.push(flatten_triangle(corners, flags));
+        let (mut normals, mut texcoords) = (scene.corner_normals()[id], scene.corner_texcoords()[id]);
+        normals.rotate_left(first);
+        texcoords.rotate_left(first);
+        let [t0, t1, t2] = texcoords;
         triangle_shading.push(TriangleShading {
-            normals: scene.corner_normals()[id],
+            normals,
             object,
             texcoords: [t0.x, t0.y, t1.x, t1.y, t2.x, t2.y],
             material,
@@ -188,6 +204,18 @@ fn flatten_triangles(scene: &Scene, anchor: bool, monitor: &Monitor) -> Result<(
         });
     }
     Ok((triangles, triangle_shading))
+}
+
+/// A triangle with the plane through its corners, which in single precision would be lost in long thin ones.
+fn flatten_triangle(corners: [Vec3; 3], flags: u32) -> Triangle {
+    let [a, b, c] = corners.map(|p| p.as_dvec3());
+    let n = (b - a).cross(c - a);
+    let axis = if n.x.abs() > n.y.abs().max(n.z.abs()) { 0 } else { 1 + usize::from(n.z.abs() >= n.y.abs()) };
+    let slope = |i: usize| (n[(axis + i) % 3] / n[axis]) as f32;
+    // What has no area is a point, which no ray hits.
+    let (corners, p, q) = if has_area(corners) { (corners, slope(1), slope(2)) } else { ([corners[0]; 3], 0.0, 0.0) };
+    let bits = f32::from_bits(flags | (axis as u32) << TRIANGLE_AXIS_SHIFT);
+    Triangle { corners: [float4(corners[0], bits), float4(corners[1], p), float4(corners[2], q)] }
 }
 
 fn diagonal(scene: &Scene) -> f32 {
@@ -202,7 +230,7 @@ fn diagonal(scene: &Scene) -> f32 {
 fn triangle_flags(material: &crate::scene::Material) -> u32 {
     let cutout = if material.cutout_texture.is_some() { TRIANGLE_CUTOUT } else { 0 };
     let glass = matches!(material.surface, Surface::Glass | Surface::ThinGlass);
-    cutout | if glass { TRIANGLE_NO_SHADOW } else { 0 }
+    cutout | if glass { TRIANGLE_GLASS } else { 0 }
 }
 
 fn flatten_material(m: &crate::scene::Material, anchor: bool) -> layout::Material {

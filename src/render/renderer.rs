@@ -342,6 +342,7 @@ impl Renderer {
     }
 
     /// Moves the camera, changes lights (as many as a scene may have) or environment, for the frames that follow.
+    /// Positions are relative to [`PreparedScene::origin`].
     ///
     /// # Errors
     /// As for [`View::validate`]; the view then stays.

@@ -59,6 +59,9 @@ fn wrong<T>(place: impl Into<String>, message: impl Into<String>) -> std::result
 }
 
 fn check_parts(s: &SceneParts) -> std::result::Result<(), Wrong> {
+    if !s.origin.is_finite() {
+        return wrong("origin", format!("{} is not finite", s.origin));
+    }
     let count = s.triangles.len();
     if count == 0 {
         return wrong("triangles", "there are none; nothing to draw");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Triangles of different objects that lie in one plane and cover each other: which of the two a ray finds is left to
-//! rounding.
+//! rounding, but for those with a rule: the same three places (`src/prepare/coincident.rs`), and glass, before which what
+//! is opaque comes.
 //!
 //! Triangles are sorted into cells of like planes (normal and distance, from a hash); within a cell a sweep along strips
 //! finds those whose boxes meet, and only these are cut against each other. That is close to linear in the number of
@@ -34,13 +35,17 @@ const ASKEW: Vec3 = Vec3::new(0.573_171_9, 0.604_713_3, 0.553_092_7);
 /// How two triangles lie.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(super) enum Kind {
-    /// They face opposite sides and share two corners: the front and the back of a sheet.
+    /// The same three places, facing opposite sides: the front and the back of a sheet. Each is seen from its front.
+    Sheet,
+    /// They face opposite sides and share two corners: a sheet that is split in two ways.
     TwoSided,
     /// They face opposite sides and do not: bodies that touch, mostly.
     Contact,
-    /// One of them bounds a body of glass.
+    /// One of them bounds a body of glass. The other is seen.
     OnGlass,
-    /// The same three places, facing the same side.
+    /// Both bound bodies of glass.
+    BothGlass,
+    /// The same three places, facing the same side. The first is seen.
     Duplicate,
     /// They face the same side: a decal, or one face left inside another.
     Decal,
@@ -239,8 +244,10 @@ fn kind(scene: &Scene, a: &Face, b: &Face) -> Kind {
     };
     let shared = a.corners.iter().filter(|c| b.corners.contains(c)).count();
     match (a.turned != b.turned, shared) {
+        _ if is_glass(a) && is_glass(b) => Kind::BothGlass,
         _ if is_glass(a) || is_glass(b) => Kind::OnGlass,
-        (true, 2..) => Kind::TwoSided,
+        (true, 3) => Kind::Sheet,
+        (true, 2) => Kind::TwoSided,
         (true, _) => Kind::Contact,
         (false, 3) => Kind::Duplicate,
         (false, _) => Kind::Decal,
@@ -332,7 +339,7 @@ mod tests {
         for n in normals() {
             // The same square from behind: each triangle lies on one of the other's.
             let two = squares(n, &[(0.0, 0.0, 0.0, 1.0, false), (0.0, 0.0, 0.0, 1.0, true)]);
-            assert_eq!(counted(&two), [(Kind::TwoSided, 2)], "{n}");
+            assert_eq!(counted(&two), [(Kind::Sheet, 2)], "{n}");
             let twice = squares(n, &[(0.0, 0.0, 0.0, 1.0, false), (0.0, 0.0, 0.0, 1.0, false)]);
             assert_eq!(counted(&twice), [(Kind::Duplicate, 2)], "{n}");
             // A smaller one in the middle: the diagonals lie on each other.

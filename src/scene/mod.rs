@@ -6,12 +6,12 @@
 //! [`SceneParts`], plain data in scene units.
 
 pub mod builtin;
-mod check;
+pub(crate) mod check;
 mod coplanar;
 pub mod doctor;
 mod import;
 
-use glam::{Vec2, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 
 use crate::Result;
 
@@ -85,7 +85,14 @@ impl Scene {
         &self.parts.name
     }
 
-    /// Vertex positions, in scene units.
+    /// What was taken off all positions of the scene's files, vertices, camera and lights alike, in scene units: 0 unless
+    /// the scene lies so far from the origin that single precision would not do. Every position that the library takes
+    /// or gives, in a [`View`] as well, is relative to this one; add it to have the file's coordinates.
+    pub fn origin(&self) -> DVec3 {
+        self.parts.origin
+    }
+
+    /// Vertex positions, in scene units, relative to [`Scene::origin`].
     pub fn positions(&self) -> &[Vec3] {
         &self.parts.positions
     }
@@ -146,6 +153,9 @@ impl Scene {
 pub struct SceneParts {
     /// Short name: the folder's or file's, or the built-in scene's.
     pub name: String,
+    /// Where the positions count from, in the coordinates of the scene's files; see [`Scene::origin`]. Nothing that is
+    /// drawn depends on it.
+    pub origin: DVec3,
     /// Vertex positions, in scene units.
     pub positions: Vec<Vec3>,
     /// Three indices into `positions` for each triangle. Triangle ids everywhere are indices into this list.

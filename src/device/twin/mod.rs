@@ -22,6 +22,7 @@ pub mod shade;
 pub mod similarity;
 mod trace;
 pub mod traverse;
+pub mod triangle_test;
 mod walk_short;
 mod walk_stack;
 

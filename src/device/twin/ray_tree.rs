@@ -12,8 +12,9 @@ use super::planes::{
 use super::scene_args::{SceneArgs, Work, xyz};
 use super::shade::{ShadePoint, shade_local, srgb_word};
 use super::traverse::{Hit, any_hit, closest_hit};
+use super::triangle_test::plane_normal;
 use crate::layout::*;
-use crate::math::{cross, dot, fraction, max2, min2, normalize, unpack_normal};
+use crate::math::{dot, fraction, max2, min2, normalize, unpack_normal};
 
 /// A hit point with everything that shading and secondary rays need.
 #[derive(Debug, Clone, Copy)]
@@ -26,6 +27,7 @@ pub struct SurfacePoint {
     pub t: f32,
     pub object: u32,
     pub material: u32,
+    pub offset: f32,
 }
 
 impl SurfacePoint {
@@ -42,7 +44,7 @@ impl SurfacePoint {
 
     /// Where rays that leave on the ray's side start.
     fn outside(&self, scene: &SceneArgs) -> Vec3 {
-        if scene.anchor { self.position } else { self.position + self.geometric_normal * scene.frame.epsilon }
+        if scene.anchor { self.position } else { self.position + self.geometric_normal * self.offset }
     }
 }
 
@@ -50,16 +52,23 @@ impl SurfacePoint {
 pub fn surface_point(scene: &SceneArgs, o: Vec3, d: Vec3, hit: &Hit) -> SurfacePoint {
     let shading = &scene.triangle_shading[hit.triangle as usize];
     let triangle = &scene.triangles[hit.triangle as usize];
-    let g = normalize(cross(xyz(triangle.edge1), xyz(triangle.edge2)));
+    let g = normalize(plane_normal(triangle));
     let geometric_normal = if dot(g, d) > 0.0 { -g } else { g };
-    let position = o + d * hit.t;
     let (object, material) = (shading.object, shading.material);
     if scene.anchor {
-        let position = position + geometric_normal * scene.frame.epsilon;
-        return SurfacePoint { position, geometric_normal, normal: geometric_normal, s: 0.0, t: 0.0, object, material };
+        let offset = scene.frame.epsilon;
+        let position = o + d * hit.t + geometric_normal * offset;
+        let normal = geometric_normal;
+        return SurfacePoint { position, geometric_normal, normal, s: 0.0, t: 0.0, object, material, offset };
     }
     let (u, v) = (hit.u, hit.v);
     let w = 1.0 - u - v;
+    let [a, b, c] = triangle.corners.map(xyz);
+    let (e1, e2) = (b - a, c - a);
+    let position = a + e1 * u + e2 * v;
+    let size = a.abs() + e1.abs() + e2.abs();
+    let sum = size.x + size.y + size.z;
+    let offset = max2(sum * OFFSET_ERROR, min2(sum * OFFSET_MOST, scene.frame.epsilon));
     let n = unpack_normal(shading.normals[0]) * w
         + unpack_normal(shading.normals[1]) * u
         + unpack_normal(shading.normals[2]) * v;
@@ -69,7 +78,7 @@ pub fn surface_point(scene: &SceneArgs, o: Vec3, d: Vec3, hit: &Hit) -> SurfaceP
     let [s0, t0, s1, t1, s2, t2] = shading.texcoords;
     let s = fraction(s0 * w + s1 * u + s2 * v);
     let t = fraction(t0 * w + t1 * u + t2 * v);
-    SurfacePoint { position, geometric_normal, normal, s, t, object, material }
+    SurfacePoint { position, geometric_normal, normal, s, t, object, material, offset }
 }
 
 /// One bit per light that does not reach the point; those that are known get no ray.
@@ -84,7 +93,8 @@ pub fn shadow_test(scene: &SceneArgs, p: &SurfacePoint, known: &KnownShadows, wo
         } else if !shadowed {
             work.shadow_rays += 1;
             let distance = dot(to_light, to_light).sqrt();
-            shadowed = any_hit(scene, o, to_light * (1.0 / distance), distance, work);
+            let reach = if scene.anchor { distance } else { distance * SHADOW_REACH };
+            shadowed = any_hit(scene, o, to_light * (1.0 / distance), reach, work);
         }
         bits |= u32::from(shadowed) << i;
     }
@@ -150,7 +160,7 @@ fn continue_chain(scene: &SceneArgs, p: &SurfacePoint, split_reflection: bool, c
     }
     c.weight *= xyz(m.transmission) * (1.0 - f);
     c.direction = if thin { c.direction } else { refracted };
-    c.origin = p.position - p.geometric_normal * scene.frame.epsilon;
+    c.origin = p.position - p.geometric_normal * p.offset;
     c.inside = if thin { c.inside } else { !c.inside };
     c.refracted = true;
     true

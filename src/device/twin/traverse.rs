@@ -4,9 +4,10 @@
 use glam::Vec3;
 
 use super::scene_args::{SceneArgs, Work};
+use super::triangle_test::RayTests;
 use super::walk_short::ShortWalk;
 use super::walk_stack::StackWalk;
-use crate::layout::{FAR_AWAY, NO_TEXTURE, NO_TRIANGLE, TRIANGLE_CUTOUT, TRIANGLE_NO_SHADOW, Traversal};
+use crate::layout::{FAR_AWAY, NO_TEXTURE, NO_TRIANGLE, TRIANGLE_CUTOUT, TRIANGLE_GLASS, Traversal};
 use crate::math::{fraction, max2, min2};
 use crate::prepare::kdtree::KdNode;
 
@@ -56,32 +57,6 @@ fn is_hole(scene: &SceneArgs, triangle: u32, u: f32, v: f32) -> bool {
     let x = ((s * width as f32) as u32).min(width - 1);
     let y = height - 1 - ((t * height as f32) as u32).min(height - 1);
     (scene.texels[(texture.offset + y * width + x) as usize] >> 24) < 128
-}
-
-/// Moeller and Trumbore's test, both sides: (t, u, v, flag bits) where the ray's line crosses the triangle. The weights
-/// are compared before the division, as in the kernel.
-#[inline]
-fn intersect(scene: &SceneArgs, id: u32, o: Vec3, d: Vec3) -> Option<(f32, f32, f32, u32)> {
-    let triangle = &scene.triangles[id as usize];
-    let [v0x, v0y, v0z, bits] = triangle.corner;
-    let [e1x, e1y, e1z, _] = triangle.edge1;
-    let [e2x, e2y, e2z, _] = triangle.edge2;
-    let (px, py, pz) = (d.y * e2z - d.z * e2y, d.z * e2x - d.x * e2z, d.x * e2y - d.y * e2x);
-    let det = e1x * px + e1y * py + e1z * pz;
-    let (sx, sy, sz) = (o.x - v0x, o.y - v0y, o.z - v0z);
-    let us = sx * px + sy * py + sz * pz;
-    if !(us * det >= 0.0 && us.abs() <= det.abs()) {
-        return None;
-    }
-    let (qx, qy, qz) = (sy * e1z - sz * e1y, sz * e1x - sx * e1z, sx * e1y - sy * e1x);
-    let vs = d.x * qx + d.y * qy + d.z * qz;
-    if !(vs * det >= 0.0 && (us + vs).abs() <= det.abs()) {
-        return None;
-    }
-    let inverse_det = 1.0 / det;
-    let t = (e2x * qx + e2y * qy + e2z * qz) * inverse_det;
-    let (u, v) = (us * inverse_det, vs * inverse_det);
-    Some((t, u, v, bits.to_bits()))
 }
 
 /// A ray on its way through the tree: `node`, and the part of the ray within it.
@@ -169,7 +144,7 @@ pub(super) trait Walk<'a>: Sized {
     }
 }
 
-/// The closest hit of the ray `o + t * d` with `t > 0`: the one with the least (t, triangle id).
+/// The closest hit of the ray `o + t * d`: the one with the least (t, triangle id).
 pub fn closest_hit(scene: &SceneArgs, o: Vec3, d: Vec3, work: &mut Work) -> Hit {
     match scene.traversal {
         Traversal::PrivateStack => closest_by::<StackWalk>(scene, o, d, work),
@@ -177,7 +152,7 @@ pub fn closest_hit(scene: &SceneArgs, o: Vec3, d: Vec3, work: &mut Work) -> Hit 
     }
 }
 
-/// Whether anything that casts a shadow lies on the ray with `0 < t < t_limit`.
+/// Whether anything that casts a shadow lies on the ray before `t_limit`, by more than roundings explain.
 pub fn any_hit(scene: &SceneArgs, o: Vec3, d: Vec3, t_limit: f32, work: &mut Work) -> bool {
     match scene.traversal {
         Traversal::PrivateStack => any_by::<StackWalk>(scene, o, d, t_limit, work),
@@ -188,16 +163,19 @@ pub fn any_hit(scene: &SceneArgs, o: Vec3, d: Vec3, t_limit: f32, work: &mut Wor
 fn closest_by<'a, W: Walk<'a>>(scene: &SceneArgs<'a>, o: Vec3, d: Vec3, work: &mut Work) -> Hit {
     let mut best = Hit::NONE;
     let Some(walker) = Walker::begin(scene, o, d, FAR_AWAY) else { return best };
+    let tests = RayTests::begin(o, d, walker.inv);
     let mut walk = W::start(walker, scene.traversal);
     loop {
         for &id in &scene.leaf_triangles[walk.leaf(work)] {
             work.triangle_tests += 1;
-            let Some((t, u, v, bits)) = intersect(scene, id, o, d) else { continue };
-            if t > 0.0
-                && (t < best.t || (t == best.t && id < best.triangle))
-                && !(bits & TRIANGLE_CUTOUT != 0 && is_hole(scene, id, u, v))
-            {
-                best = Hit { t, u, v, triangle: id };
+            let Some(c) = tests.crossing(&scene.triangles[id as usize]) else { continue };
+            let ahead = if c.bits & TRIANGLE_GLASS != 0 { c.ahead + 2.0 * c.error } else { c.ahead };
+            let t = ahead / c.slope;
+            if t < best.t || (t == best.t && id < best.triangle) {
+                let (u, v) = c.weights();
+                if !(c.bits & TRIANGLE_CUTOUT != 0 && is_hole(scene, id, u, v)) {
+                    best = Hit { t, u, v, triangle: id };
+                }
             }
         }
         let next = walk.end_of_leaf();
@@ -209,17 +187,17 @@ fn closest_by<'a, W: Walk<'a>>(scene: &SceneArgs<'a>, o: Vec3, d: Vec3, work: &m
 
 fn any_by<'a, W: Walk<'a>>(scene: &SceneArgs<'a>, o: Vec3, d: Vec3, t_limit: f32, work: &mut Work) -> bool {
     let Some(walker) = Walker::begin(scene, o, d, t_limit) else { return false };
+    let tests = RayTests::begin(o, d, walker.inv);
     let mut walk = W::start(walker, scene.traversal);
     loop {
         for &id in &scene.leaf_triangles[walk.leaf(work)] {
             work.triangle_tests += 1;
-            let Some((t, u, v, bits)) = intersect(scene, id, o, d) else { continue };
-            if t > 0.0
-                && t < t_limit
-                && bits & TRIANGLE_NO_SHADOW == 0
-                && !(bits & TRIANGLE_CUTOUT != 0 && is_hole(scene, id, u, v))
-            {
-                return true;
+            let Some(c) = tests.crossing(&scene.triangles[id as usize]) else { continue };
+            if c.ahead + c.error < t_limit * c.slope && c.bits & TRIANGLE_GLASS == 0 {
+                let (u, v) = c.weights();
+                if !(c.bits & TRIANGLE_CUTOUT != 0 && is_hole(scene, id, u, v)) {
+                    return true;
+                }
             }
         }
         walk.end_of_leaf();

@@ -36,7 +36,7 @@ use crate::{Error, Result, files};
 const MAGIC: &[u8; 16] = b"rarefy baked\r\n\x1a\n";
 
 /// Version of the format, and of the meaning of its arrays: another layout of nodes or structs is another version.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 /// Magic, version, checksum, length.
 const PREFIX_BYTES: u64 = 32;
@@ -70,8 +70,10 @@ struct Head {
     epsilon: f32,
     bounds_min: [f32; 3],
     bounds_max: [f32; 3],
+    /// Three doubles, the low word of each first.
+    origin: [[u32; 2]; 3],
 }
-const _: () = assert!(size_of::<Head>() == 140);
+const _: () = assert!(size_of::<Head>() == 164);
 
 /// A light: position and intensity.
 type LightWords = [f32; 6];

@@ -82,6 +82,7 @@ pub(super) fn read(reader: &mut dyn Read, length: u64, place: &str, monitor: &Mo
         tables: layout::tables(),
         shading,
         epsilon: head.epsilon,
+        origin: head.origin.map(|[low, high]| f64::from_bits(u64::from(high) << 32 | u64::from(low))).into(),
     };
     monitor.check()?;
     validate::validate(&scene, place)?;

@@ -6,8 +6,8 @@
 //! [`PreparedScene::bake`]. Places are names of arrays with an index.
 
 use crate::layout::{
-    self, NO_TEXTURE, SURFACE_GLASS, SURFACE_MIRROR, SURFACE_OPAQUE, SURFACE_THIN_GLASS, TRIANGLE_CUTOUT,
-    TRIANGLE_NO_SHADOW,
+    self, NO_TEXTURE, SURFACE_GLASS, SURFACE_MIRROR, SURFACE_OPAQUE, SURFACE_THIN_GLASS, TRIANGLE_AXIS_SHIFT,
+    TRIANGLE_CUTOUT, TRIANGLE_GLASS, TRIANGLE_ONE_SIDED,
 };
 use crate::prepare::kdtree::{KdTree, MAX_DEPTH};
 use crate::prepare::{PreparedScene, Shading};
@@ -41,6 +41,9 @@ fn check(scene: &PreparedScene) -> Checked {
     }
     if !(scene.epsilon > 0.0 && scene.epsilon <= 16.0 * MAX_COORDINATE) {
         return wrong("epsilon", format!("{} is out of range", scene.epsilon));
+    }
+    if !scene.origin.is_finite() {
+        return wrong("origin", format!("{} is not finite", scene.origin));
     }
     textures(scene)?;
     for (i, material) in scene.materials.iter().enumerate() {
@@ -136,12 +139,12 @@ fn triangles(scene: &PreparedScene) -> Checked {
     let (lo, hi) = (&scene.tree.bounds_min, &scene.tree.bounds_max);
     let allowed: Vec<u32> = scene.materials.iter().map(|m| flags(m, scene.shading)).collect();
     for (i, (t, s)) in scene.triangles.iter().zip(&scene.triangle_shading).enumerate() {
-        let inside = (0..3).all(|axis| t.corner[axis] > lo[axis] && t.corner[axis] < hi[axis]);
-        if !inside {
-            return wrong(format!("triangles[{i}]"), format!("its corner {:?} is not in the box", &t.corner[..3]));
+        let outside = |c: &&[f32; 4]| !(0..3).all(|axis| c[axis] > lo[axis] && c[axis] < hi[axis]);
+        if let Some(corner) = t.corners.iter().find(outside) {
+            return wrong(format!("triangles[{i}]"), format!("its corner {:?} is not in the box", &corner[..3]));
         }
-        if !(within(&t.edge1[..3], 2.0 * MAX_COORDINATE) && within(&t.edge2[..3], 2.0 * MAX_COORDINATE)) {
-            return wrong(format!("triangles[{i}]"), "an edge is not finite or too long");
+        if !within(&[t.corners[1][3], t.corners[2][3]], 1.0) {
+            return wrong(format!("triangles[{i}]"), "the slopes of its plane are not at most 1");
         }
         if !within(&s.texcoords, MAX_TEXCOORD) {
             let message = format!("{:?} are not finite or beyond {MAX_TEXCOORD:e}", s.texcoords);
@@ -155,8 +158,13 @@ fn triangles(scene: &PreparedScene) -> Checked {
             let message = format!("material {} where its object has {material}", s.material);
             return wrong(format!("triangles[{i}].material"), message);
         }
-        let (found, right) = (t.corner[3].to_bits(), allowed[material as usize]);
-        if found != right {
+        let (bits, right) = (t.corners[0][3].to_bits(), allowed[material as usize]);
+        let optional = if scene.shading == Shading::Full { TRIANGLE_ONE_SIDED } else { 0 };
+        let (found, axis) = (bits & !(!0 << TRIANGLE_AXIS_SHIFT), bits >> TRIANGLE_AXIS_SHIFT);
+        if axis > 2 {
+            return wrong(format!("triangles[{i}]"), format!("its plane has no axis {axis}"));
+        }
+        if found & !optional != right {
             return wrong(format!("triangles[{i}].flags"), format!("{found:#x} where its material gives {right:#x}"));
         }
     }
@@ -170,7 +178,7 @@ fn flags(m: &layout::Material, shading: Shading) -> u32 {
     }
     let cutout = if m.cutout_texture != NO_TEXTURE { TRIANGLE_CUTOUT } else { 0 };
     let glass = matches!(m.surface, SURFACE_GLASS | SURFACE_THIN_GLASS);
-    cutout | if glass { TRIANGLE_NO_SHADOW } else { 0 }
+    cutout | if glass { TRIANGLE_GLASS } else { 0 }
 }
 
 /// A node that is still to be looked at.

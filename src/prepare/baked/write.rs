@@ -52,6 +52,7 @@ impl<'a> Plan<'a> {
             epsilon: scene.epsilon,
             bounds_min: scene.tree.bounds_min,
             bounds_max: scene.tree.bounds_max,
+            origin: scene.origin.to_array().map(|v| [v.to_bits() as u32, (v.to_bits() >> 32) as u32]),
         };
         let light = |light: &crate::scene::Light| {
             let [[px, py, pz], [ix, iy, iz]] = [light.position.to_array(), light.intensity.to_array()];

@@ -16,7 +16,7 @@
 const EPSILON_ULPS: f32 = 4.0;
 
 /// How far from a triangle a point may lie and still count as on it, for a scene whose coordinates reach `largest`.
-pub(super) fn cell_epsilon(largest: f32) -> f32 {
+pub(crate) fn cell_epsilon(largest: f32) -> f32 {
     // The lower end keeps boxes from being empty when all corners sit in the origin.
     (largest * f32::EPSILON * EPSILON_ULPS).max(1.0e-30)
 }

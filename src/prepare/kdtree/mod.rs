@@ -12,6 +12,7 @@ mod statistics;
 mod validate;
 
 pub use build::{BuildOptions, MAX_BYTES_PER_TRIANGLE};
+pub(crate) use clip::cell_epsilon;
 pub use statistics::KdStatistics;
 
 pub use crate::layout::LEAF;

@@ -30,7 +30,7 @@ pub struct Finding {
     /// How much it matters.
     pub severity: Severity,
     /// What it is about, in one or two words that do not change: `normals`, `texture coordinates`, `triangles`,
-    /// `overlaps`, `extent`, `names`, `winding`, `materials`, `keys`, `lights`, or `loading` for what was mended or left out then (missing
+    /// `overlaps`, `extent`, `origin`, `names`, `winding`, `materials`, `keys`, `lights`, or `loading` for what was mended or left out then (missing
     /// textures and materials, degenerate triangles).
     pub topic: &'static str,
     /// One sentence with the numbers, and the remedy where there is one.
@@ -54,6 +54,7 @@ pub fn examine(scene: &Scene) -> Vec<Finding> {
     for warning in scene.warnings() {
         tell(Severity::Warning, "loading", warning.clone());
     }
+    origin(scene, &mut tell);
     attributes(scene, &mut tell);
     materials(scene, &mut tell);
     triangles(scene, &mut tell);
@@ -82,6 +83,17 @@ fn some_of<S: AsRef<str>>(names: &[S]) -> String {
     let more =
         if names.len() > shown.len() { format!(" and {} more", names.len() - shown.len()) } else { String::new() };
     shown.join(", ") + &more
+}
+
+fn origin(scene: &Scene, tell: Tell) {
+    let origin = scene.origin();
+    if origin != glam::DVec3::ZERO {
+        let message = format!(
+            "the scene lies far from the origin: {origin} was taken off all positions, camera and lights included, before \
+             they were rounded to single precision; positions given to the library count from there"
+        );
+        tell(Severity::Note, "origin", message);
+    }
 }
 
 fn attributes(scene: &Scene, tell: Tell) {
@@ -276,13 +288,21 @@ fn overlaps(scene: &Scene, tell: Tell) {
         let [a, b] = objects.map(|o| &scene.objects()[o as usize]);
         let pairs = format!("{at_least}{count} pairs of triangles (first in `{}` and `{}`)", a.name, b.name);
         let (severity, what, remedy) = match kind {
-            Kind::TwoSided => (Severity::Warning, "are the two sides of one sheet", "keep one side"),
+            Kind::Sheet => (Severity::Note, "are the two sides of one sheet", ""),
+            Kind::Duplicate => (Severity::Note, "are the same twice", ""),
+            Kind::OnGlass => (Severity::Note, "touch, and one is glass", ""),
+            Kind::TwoSided => (Severity::Warning, "are the two sides of one sheet, split in two ways", "keep one side"),
             Kind::Contact => (Severity::Note, "touch face to face", "where both are seen, move them apart"),
-            Kind::OnGlass => (Severity::Warning, "touch, and one is glass", "lift the glass off, or sink it in"),
-            Kind::Duplicate => (Severity::Warning, "are the same twice", "delete one object"),
+            Kind::BothGlass => (Severity::Warning, "touch, and both are glass", "move them apart, or let them overlap"),
             Kind::Decal => (Severity::Warning, "cover each other in one plane", "move the one to be seen to the front"),
         };
-        let message = format!("{pairs} {what}: rounding decides which of them is seen, with noise; {remedy}");
+        let rule = match kind {
+            Kind::Sheet => "each is seen from its front".into(),
+            Kind::Duplicate => "the first is seen".into(),
+            Kind::OnGlass => "the other one is seen, as if it lay before the glass".into(),
+            _ => format!("rounding decides which of them is seen, with noise; {remedy}"),
+        };
+        let message = format!("{pairs} {what}: {rule}");
         tell(severity, "overlaps", message);
     }
 }

@@ -12,6 +12,7 @@ use super::obj::{self, FAR_TEXCOORD, MISSING, ObjFile};
 use super::options::reserve;
 use super::source::Source;
 use super::triangulate::{self, Split, Work};
+use super::twins::Twins;
 use crate::error::Remedy;
 use crate::math::pack_normal;
 use crate::monitor::Monitor;
@@ -56,6 +57,7 @@ pub(super) struct Geometry {
 /// What happened to faces, for the warnings.
 struct Faces<'a> {
     work: Work<'a>,
+    twins: Twins,
     polygons_approximate: usize,
     first_approximate: Option<String>,
     polygons_degenerate: usize,
@@ -120,6 +122,7 @@ pub(super) fn assemble(
     let mut shifts: Vec<DVec2> = Vec::new();
     let mut faces = Faces {
         work: Work::new(monitor),
+        twins: Twins::find(&file.models, path)?,
         polygons_approximate: 0,
         first_approximate: None,
         polygons_degenerate: 0,
@@ -282,6 +285,13 @@ fn add_faces(g: &mut Geometry, faces: &mut Faces, shape: &Shape, monitor: &Monit
         } else {
             corners.clear();
             corners.extend(vertices.iter().map(|&v| g.positions[indices[v as usize] as usize]));
+            if let Some(known) = faces.twins.known(&corners) {
+                for t in &known {
+                    add_triangle(g, faces, shape, t.map(|c| first + c as usize));
+                }
+                first += arity;
+                continue;
+            }
             split.clear();
             match triangulate::split(&corners, &mut faces.work, &mut split)? {
                 Split::Exact => {}
@@ -291,6 +301,7 @@ fn add_faces(g: &mut Geometry, faces: &mut Faces, shape: &Shape, monitor: &Monit
                     faces.first_approximate.get_or_insert_with(|| g.objects[object as usize].name.clone());
                 }
             }
+            faces.twins.remember(&corners, &split);
             for t in &split {
                 add_triangle(g, faces, shape, t.map(|c| first + c as usize));
             }

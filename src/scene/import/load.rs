@@ -14,6 +14,7 @@ use super::mtl::{self, MtlMaterial};
 use super::normals::{self, Smoothing};
 use super::notices::Notices;
 use super::obj::{self, ObjFile};
+use super::origin;
 use super::source::{FileSource, Source};
 use super::texture::{Alpha, Role, Textures};
 use super::view::{self, ViewFile};
@@ -83,12 +84,13 @@ pub fn load_from(name: &str, files: &dyn FileSource, options: &LoadOptions, moni
 fn load_files(files: Files, source: &Source, options: &LoadOptions, monitor: &Monitor) -> Result<Scene> {
     let Files { name, obj, view } = files;
     // First the small files: a wrong key should not cost the time of a large mesh.
+    monitor.restart();
+    let origin = origin::of(source, &obj, monitor)?;
     let mut view_file = match &view {
-        Some(view) => view::read(source, view)?,
+        Some(view) => view::read(source, view, origin)?,
         None => ViewFile::default(),
     };
-    monitor.restart();
-    let file = obj::read(source, &obj, options, &monitor.part("reading geometry", 0.0, 0.6))?;
+    let file = obj::read(source, &obj, origin, options, &monitor.part("reading geometry", 0.0, 0.6))?;
     let mut warnings = file.warnings.clone();
     let duplicate_names = file.reopened_groups.clone();
     let mut unused_keys = file.unused_keys.clone();
@@ -144,6 +146,7 @@ fn load_files(files: Files, source: &Source, options: &LoadOptions, monitor: &Mo
     part.tell(1.0);
     Scene::new(SceneParts {
         name,
+        origin,
         positions: geometry.positions,
         triangles: geometry.triangles,
         corner_normals: geometry.corner_normals,

@@ -373,7 +373,9 @@ mod tests {
         let (mut warnings, mut unused) = (Vec::new(), Vec::new());
         let source = super::super::source::Source::Disk { confined_to: None, opened: Default::default() };
         let materials = super::super::mtl::read(&source, &path, &mut warnings, &mut unused).unwrap();
-        let view = super::super::view::parse(std::path::Path::new("view.json"), &format!("{{{view}}}")).unwrap();
+        let view =
+            super::super::view::parse(std::path::Path::new("view.json"), &format!("{{{view}}}"), glam::DVec3::ZERO)
+                .unwrap();
         let m = &materials[0];
         let finish = Kinds::new(&view).decide(m, m.diffuse_map.is_some(), &mut warnings);
         (finish.material, finish.note, warnings)

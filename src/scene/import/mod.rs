@@ -13,9 +13,11 @@ pub(super) mod normals;
 mod notices;
 mod obj;
 mod options;
+mod origin;
 mod source;
 mod texture;
 mod triangulate;
+mod twins;
 mod unused;
 mod view;
 

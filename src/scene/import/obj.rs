@@ -13,19 +13,21 @@
 //!   lines and points are counted and left out, indices are checked against what is defined so far.
 //! - Faces of a material that no MTL file defines lose the material's name. Names of groups and materials are handed
 //!   on as numbers, and each material is "defined" where it is first used; MTL files are read afterwards.
+//! - Nor is it enough for positions far from the origin: what is given as `origin` is taken off before they are rounded.
 //! - Continued lines, CR and a byte order mark, colours behind positions, `vt` with one coordinate: put right.
 
 use std::collections::HashMap;
 use std::io::{self, BufRead, Read};
 use std::path::Path;
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
 use super::LoadOptions;
 use super::lines::{LONGEST_KEY, LogicalLines, MAX_OBJ_BYTES, keyword, lower_case, name_text, without_comment, words};
 use super::locate;
 use super::normals::Smoothing;
 use super::options::reserve;
+use super::origin;
 use super::source::Source;
 use super::unused::Tally;
 use crate::error::Remedy;
@@ -77,9 +79,15 @@ pub(super) fn texcoord(all: &[DVec2], mesh: &tobj::Mesh, index: u32) -> Option<D
     if number == 0 { None } else { all.get(number).copied().filter(|t| t.is_finite()) }
 }
 
-/// Reads the OBJ file at `path`.
-pub(super) fn read(source: &Source, path: &Path, options: &LoadOptions, monitor: &Monitor) -> Result<ObjFile> {
-    let mut feed = Feed::new(LogicalLines::open(source, path, MAX_OBJ_BYTES)?, options, monitor);
+/// Reads the OBJ file at `path`, with `origin` taken off all positions.
+pub(super) fn read(
+    source: &Source,
+    path: &Path,
+    origin: DVec3,
+    options: &LoadOptions,
+    monitor: &Monitor,
+) -> Result<ObjFile> {
+    let mut feed = Feed::new(LogicalLines::open(source, path, MAX_OBJ_BYTES)?, origin, options, monitor);
     let define = |name: &Path| {
         let name = name.display().to_string();
         let material = tobj::Material { name: name.clone(), ..Default::default() };
@@ -150,6 +158,7 @@ struct Feed<'a> {
     at: usize,
     error: Option<Error>,
     options: &'a LoadOptions,
+    origin: DVec3,
     defined: Defined,
     texcoords: Vec<DVec2>,
     groups: Names,
@@ -184,7 +193,7 @@ enum Step {
 }
 
 impl<'a> Feed<'a> {
-    fn new(lines: LogicalLines, options: &'a LoadOptions, monitor: &'a Monitor) -> Self {
+    fn new(lines: LogicalLines, origin: DVec3, options: &'a LoadOptions, monitor: &'a Monitor) -> Self {
         let unused = Tally::new(lines.path());
         let mut feed = Feed {
             lines,
@@ -193,6 +202,7 @@ impl<'a> Feed<'a> {
             at: 0,
             error: None,
             options,
+            origin,
             defined: Defined::default(),
             texcoords: vec![DVec2::NAN],
             groups: Names::default(),
@@ -242,7 +252,10 @@ impl<'a> Feed<'a> {
                         return Err(syntax(self.lines.path(), line_number, message));
                     }
                 };
-                push_line(&mut self.ready, b"v ", kept);
+                match origin::moved(kept, self.origin) {
+                    Some(moved) => push_line(&mut self.ready, b"v ", moved.as_bytes()),
+                    None => push_line(&mut self.ready, b"v ", kept),
+                }
             }
             b"vt" => {
                 if self.defined.texcoords == 0 {

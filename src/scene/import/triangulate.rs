@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Polygons into triangles: fans where the polygon is convex, ear clipping in the best-fit plane elsewhere.
+//! Polygons into triangles: fans where the polygon is convex and has few corners, halves of halves where it has many, ear
+//! clipping in the best-fit plane elsewhere.
 //!
 //! The plane's normal is Newell's (the sum of the cross products of successive corners), so that slightly bent
 //! polygons do well. Ear clipping follows Meisters ("Polygons have ears", 1975) with the book-keeping of Eberly
@@ -10,6 +11,9 @@ use glam::{DVec2, DVec3, Vec3};
 
 use crate::Result;
 use crate::monitor::Monitor;
+
+/// Convex polygons of more corners do not become fans.
+const FAN_MOST: usize = 8;
 
 /// Most corner tests spent on all polygons of a scene (some seconds); what is left then becomes fans.
 const MAX_TESTS: u64 = 1_000_000_000;
@@ -86,6 +90,10 @@ pub(super) fn split(corners: &[Vec3], work: &mut Work, out: &mut Vec<[u32; 3]>) 
         return Ok(Split::Degenerate);
     }
     if is_convex(&ring, &flat) {
+        if ring.len() > FAN_MOST && turns_everywhere(&ring, &flat) {
+            halve(&ring, &points, out);
+            return Ok(Split::Exact);
+        }
         out.extend((1..ring.len() - 1).map(|i| [ring[0], ring[i], ring[i + 1]]));
         return Ok(Split::Exact);
     }
@@ -126,6 +134,43 @@ fn is_convex(ring: &[u32], flat: &[DVec2]) -> bool {
     let turns_left = (0..ring.len()).all(|i| area2(at(i), at(i + 1), at(i + 2)) >= 0.0);
     // Seen from corner 0, the others must follow each other counter-clockwise; a pentagram's do not.
     turns_left && (1..ring.len() - 1).all(|i| area2(at(0), at(i), at(i + 1)) >= 0.0)
+}
+
+/// Whether every corner turns left.
+fn turns_everywhere(ring: &[u32], flat: &[DVec2]) -> bool {
+    let at = |i: usize| flat[ring[i % ring.len()] as usize];
+    (0..ring.len()).all(|i| area2(at(i), at(i + 1), at(i + 2)) > 0.0)
+}
+
+/// Splits a convex polygon into a triangle of corners a third of the way around from each other, and what is left on each
+/// side of it in the middle, again and again. A fan of a disc is all needles from rim to rim, each of which a ray near its
+/// corner must be tested against; these are as short as the part of the rim that they fill.
+fn halve(ring: &[u32], points: &[DVec3], out: &mut Vec<[u32; 3]>) {
+    let n = ring.len();
+    let at = |i: usize| points[ring[i % n] as usize];
+    // The way along the rim from the first corner to each, and around.
+    let mut way = vec![0.0; n + 1];
+    for i in 0..n {
+        way[i + 1] = way[i] + at(i).distance(at(i + 1));
+    }
+    // The corner between two others nearest to a place on the way.
+    let nearest = |from: usize, to: usize, place: f64| {
+        let after = way[from + 1..to].partition_point(|&w| w < place) + from + 1;
+        let before = (after - 1).max(from + 1);
+        let after = after.min(to - 1);
+        if place - way[before] <= way[after] - place { before } else { after }
+    };
+    let first = nearest(0, n - 1, way[n] / 3.0);
+    let second = nearest(first, n, way[n] * 2.0 / 3.0);
+    out.push([ring[0], ring[first], ring[second]]);
+    let mut left = vec![(second, n), (first, second), (0, first)];
+    while let Some((from, to)) = left.pop() {
+        if to - from > 1 {
+            let middle = nearest(from, to, (way[from] + way[to]) * 0.5);
+            out.push([ring[from], ring[middle], ring[to % n]]);
+            left.extend([(middle, to), (from, middle)]);
+        }
+    }
 }
 
 /// The polygon that is left while ears are clipped.
@@ -304,6 +349,29 @@ mod tests {
         assert_eq!(split_well(&square, 1.0), [[0, 1, 2], [0, 2, 3]]);
         let clockwise: Vec<Vec3> = square.iter().rev().copied().collect();
         assert_eq!(split_well(&clockwise, -1.0).len(), 2);
+    }
+
+    #[test]
+    fn large_discs_have_no_needles_across() {
+        for n in [9usize, 10, 100, 1000, 5000] {
+            // Corners crowd on one side.
+            let corner = |i: usize| {
+                let t = i as f32 / n as f32;
+                (std::f32::consts::TAU * (0.5 * t + 0.5 * t * t)).sin_cos()
+            };
+            let disc: Vec<Vec3> = points(&(0..n).map(corner).collect::<Vec<_>>()).into_iter().rev().collect();
+            let area = |c: &[Vec3]| {
+                (0..c.len()).map(|i| c[i].as_dvec3().cross(c[(i + 1) % c.len()].as_dvec3()).z).sum::<f64>() * 0.5
+            };
+            let triangles = split_well(&disc, area(&disc));
+            assert_eq!(triangles.len(), n - 2);
+            // The sides of all triangles are some rims long; those of a fan, nearly n times as long as half the disc.
+            let side = |a: u32, b: u32| f64::from(disc[a as usize].distance(disc[b as usize]));
+            let sides: f64 = triangles.iter().map(|&[a, b, c]| side(a, b) + side(b, c) + side(c, a)).sum();
+            assert!(sides < 6.3 * 2.0 * (n as f64).log2(), "{n}: {sides}");
+            let fan: f64 = (1..n as u32 - 1).map(|i| side(0, i) + side(i, i + 1) + side(i + 1, 0)).sum();
+            assert!(fan > sides, "{n}");
+        }
     }
 
     #[test]

@@ -24,7 +24,7 @@
 
 use std::path::Path;
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use serde_json::{Map, Value};
 
 use super::lines::read_text;
@@ -55,13 +55,13 @@ pub(super) struct ViewFile {
     pub warnings: Vec<String>,
 }
 
-/// Reads the view at `path`.
-pub(super) fn read(source: &Source, path: &Path) -> Result<ViewFile> {
-    parse(path, &read_text(source, path, MAX_BYTES)?)
+/// Reads the view at `path`, with `origin` taken off all positions.
+pub(super) fn read(source: &Source, path: &Path, origin: DVec3) -> Result<ViewFile> {
+    parse(path, &read_text(source, path, MAX_BYTES)?, origin)
 }
 
-/// Reads the text of a view; `path` is named in messages.
-pub(super) fn parse(path: &Path, text: &str) -> Result<ViewFile> {
+/// Reads the text of a view; `path` is named in messages, `origin` is taken off all positions.
+pub(super) fn parse(path: &Path, text: &str, origin: DVec3) -> Result<ViewFile> {
     let value: Value = serde_json::from_str(text).map_err(|e| {
         let mut message = format!("not JSON: {e}");
         if text.contains("NaN") || text.contains("Infinity") {
@@ -77,8 +77,8 @@ pub(super) fn parse(path: &Path, text: &str) -> Result<ViewFile> {
     for (key, value) in &top {
         let at = At { file: &place, key: key.clone() };
         match key.as_str() {
-            "camera" => view.camera = camera(&at, value, &mut view.warnings)?,
-            "lights" => view.lights = Some(lights(&at, value, &mut view.warnings)?),
+            "camera" => view.camera = camera(&at, value, origin, &mut view.warnings)?,
+            "lights" => view.lights = Some(lights(&at, value, origin, &mut view.warnings)?),
             "suggested_ambient" => view.ambient = Some(colour(&at, value, MAX_RADIANCE)?),
             "background" => view.background = Some(colour(&at, value, MAX_RADIANCE)?),
             "extent" => {
@@ -107,7 +107,7 @@ pub(super) fn parse(path: &Path, text: &str) -> Result<ViewFile> {
 /// # Errors
 /// As for a `view.json` that is read from a file; and if camera, lights or extent are missing.
 pub(crate) fn complete(place: &str, text: &str) -> Result<(View, Vec<String>)> {
-    let file = parse(Path::new(place), text)?;
+    let file = parse(Path::new(place), text, DVec3::ZERO)?;
     let base = View::default();
     let lacks = |key: &str| Error::scene(place, format!("`{key}` is missing"));
     let view = View {
@@ -165,20 +165,30 @@ fn list<'a>(at: &At, value: &'a Value) -> Result<&'a Vec<Value>> {
 
 /// A finite number in single precision.
 fn number(at: &At, value: &Value) -> Result<f32> {
+    number_from(at, value, 0.0)
+}
+
+/// A finite number in single precision, counted from `origin`.
+fn number_from(at: &At, value: &Value, origin: f64) -> Result<f32> {
     let wide = value.as_f64().ok_or_else(|| at.error(format!("a number is needed, this is {}", kind(value))))?;
-    let single = wide as f32;
+    let single = (wide - origin) as f32;
     if single.is_finite() { Ok(single) } else { Err(at.error(format!("{wide} is too large for single precision"))) }
 }
 
-/// Three numbers of at most `limit` in size.
-fn three(at: &At, value: &Value, limit: f32) -> Result<Vec3> {
+/// A position, counted from `origin`.
+fn position(at: &At, value: &Value, origin: DVec3) -> Result<Vec3> {
+    three(at, value, MAX_VIEW_COORDINATE, origin)
+}
+
+/// Three numbers, counted from `origin`, of at most `limit` in size.
+fn three(at: &At, value: &Value, limit: f32, origin: DVec3) -> Result<Vec3> {
     let values = list(at, value)?;
     if values.len() != 3 {
         return Err(at.error(format!("three numbers are needed, this list has {}", values.len())));
     }
     let mut v = [0.0; 3];
     for (i, value) in values.iter().enumerate() {
-        v[i] = number(&at.item(i), value)?;
+        v[i] = number_from(&at.item(i), value, origin[i])?;
         if v[i].abs() > limit {
             return Err(at.item(i).error(format!("{} is out of range (at most {limit:e})", v[i])));
         }
@@ -188,7 +198,7 @@ fn three(at: &At, value: &Value, limit: f32) -> Result<Vec3> {
 
 /// RGB or grey, not negative, at most `limit`.
 fn colour(at: &At, value: &Value, limit: f32) -> Result<Vec3> {
-    let rgb = if value.is_number() { Vec3::splat(number(at, value)?) } else { three(at, value, limit)? };
+    let rgb = if value.is_number() { Vec3::splat(number(at, value)?) } else { three(at, value, limit, DVec3::ZERO)? };
     check::radiance(rgb, limit).map_err(|message| at.error(message))?;
     Ok(rgb)
 }
@@ -205,16 +215,16 @@ fn names(at: &At, value: &Value) -> Result<Vec<String>> {
 }
 
 /// The camera; `None` (and a warning) if it says neither where it is nor where it looks.
-fn camera(at: &At, value: &Value, warnings: &mut Vec<String>) -> Result<Option<Camera>> {
+fn camera(at: &At, value: &Value, origin: DVec3, warnings: &mut Vec<String>) -> Result<Option<Camera>> {
     let members = object(at, value)?;
     let (mut eye, mut look_at) = (None, None);
     let mut camera = Camera::default();
     for (key, value) in members {
         let at = at.member(key);
         match key.as_str() {
-            "eye" => eye = Some(three(&at, value, MAX_VIEW_COORDINATE)?),
-            "look_at" => look_at = Some(three(&at, value, MAX_VIEW_COORDINATE)?),
-            "up" => camera.up = three(&at, value, MAX_VIEW_COORDINATE)?,
+            "eye" => eye = Some(position(&at, value, origin)?),
+            "look_at" => look_at = Some(position(&at, value, origin)?),
+            "up" => camera.up = three(&at, value, MAX_VIEW_COORDINATE, DVec3::ZERO)?,
             "fov_y_degrees" => {
                 let degrees = number(&at, value)?;
                 check::field_of_view(degrees).map_err(|message| at.error(message))?;
@@ -235,7 +245,7 @@ fn camera(at: &At, value: &Value, warnings: &mut Vec<String>) -> Result<Option<C
     Ok(Some(camera))
 }
 
-fn lights(at: &At, value: &Value, warnings: &mut Vec<String>) -> Result<Vec<Light>> {
+fn lights(at: &At, value: &Value, origin: DVec3, warnings: &mut Vec<String>) -> Result<Vec<Light>> {
     let items = list(at, value)?;
     if items.len() > MAX_LIGHTS {
         return Err(at.error(format!("{} lights; at most {MAX_LIGHTS} are drawn, join or remove some", items.len())));
@@ -243,17 +253,17 @@ fn lights(at: &At, value: &Value, warnings: &mut Vec<String>) -> Result<Vec<Ligh
     let mut lights = Vec::with_capacity(items.len());
     for (i, value) in items.iter().enumerate() {
         let at = at.item(i);
-        let mut position = None;
+        let mut place = None;
         let mut intensity = Vec3::ONE;
         for (key, value) in object(&at, value)? {
             let at = at.member(key);
             match key.as_str() {
-                "position" => position = Some(three(&at, value, MAX_VIEW_COORDINATE)?),
+                "position" => place = Some(position(&at, value, origin)?),
                 "intensity" => intensity = colour(&at, value, MAX_INTENSITY)?,
                 _ => warnings.push(at.unknown()),
             }
         }
-        let Some(position) = position else { return Err(at.member("position").error("is missing")) };
+        let Some(position) = place else { return Err(at.member("position").error("is missing")) };
         lights.push(Light { position, intensity });
     }
     Ok(lights)
