@@ -14,6 +14,6 @@ __kernel void check(SCENE_PARAMS, const StepParams step, __global uint *attribut
                     __global uint *out_counters) {
   const uint gx = get_global_id(0), gy = get_global_id(1);
   if (gx >= step.grid_width || gy >= step.grid_height) return;
-  check_pixel(SCENE_ARGS, &step, step.origin_x + step.step_x * gx, step.origin_y + step.step_y * gy, attributes,
-              out_color, out_counters);
+  const uint pixel = grid_pixel(frame, &step, gx, gy), x = pixel & 0xffffu;
+  if (x < frame->width) check_pixel(SCENE_ARGS, &step, x, pixel >> 16, attributes, out_color, out_counters);
 }

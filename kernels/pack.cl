@@ -11,7 +11,7 @@
 #include "common/pack.clh"
 
 #define PACK_FLAG(i) grid_item_is_pending(frame, &step, attributes, i)
-#define PACK_PIXEL(i) grid_item_pixel(&step, i)
+#define PACK_PIXEL(i) grid_item_pixel(frame, &step, i)
 
 __kernel void pack_count(__constant FrameParams *frame, const StepParams step, __global const uint *attributes,
                          __global uint *out_masks, __global uint *out_sums) {
@@ -23,8 +23,8 @@ __kernel void pack_scan(const StepParams step, __global uint *sums, __local uint
   scan_level(&step, sums, scratch);
 }
 
-__kernel void pack_scatter(const StepParams step, __global const uint *masks, __global const uint *sums,
-                           __global uint *out_list) {
+__kernel void pack_scatter(__constant FrameParams *frame, const StepParams step, __global const uint *masks,
+                           __global const uint *sums, __global uint *out_list) {
   const uint chunk = get_global_id(0), chunk_count = (step.item_count + 31u) / 32u;
   if (chunk < chunk_count) PACK_SCATTER(chunk, chunk_count)
 }

@@ -16,8 +16,10 @@ __kernel void trace(SCENE_PARAMS, const StepParams step, __global const uint *li
   uint x, y;
   if (step.pixel_class == CLASS_BASE) {
     if (gx >= step.grid_width || gy >= step.grid_height) return;
-    x = step.origin_x + step.step_x * gx;
-    y = step.origin_y + step.step_y * gy;
+    const uint pixel = grid_pixel(frame, &step, gx, gy);
+    x = pixel & 0xffffu;
+    y = pixel >> 16;
+    if (x >= frame->width) return;
   } else {
     // Lists come in one row of work-groups, whose items follow each other.
     const uint item = (gx / get_local_size(0) * get_local_size(1) + gy) * get_local_size(0) + gx % get_local_size(0);

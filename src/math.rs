@@ -128,6 +128,13 @@ pub fn unpack_texcoord(half_word: u32) -> f32 {
     (half_word as f32 + 0.5) * (1.0 / 65536.0)
 }
 
+/// How often a texture whose coordinate is `x` was repeated, modulo 256.
+#[inline]
+pub fn whole_repeats(x: f32) -> u32 {
+    let whole = x.floor() + if x - x.floor() < 1.0 { 0.0 } else { 1.0 };
+    (whole - 256.0 * (whole * (1.0 / 256.0)).floor()) as u32
+}
+
 /// The fraction of `x`: `x - floor(x)`, in `[0, 1)`.
 #[inline]
 pub fn fraction(x: f32) -> f32 {
@@ -174,5 +181,15 @@ mod tests {
         assert_eq!(fraction(1.25), 0.25);
         assert_eq!(fraction(-0.25), 0.75);
         assert_eq!(fraction(-1e-9), 0.0);
+    }
+
+    #[test]
+    fn whole_repeats_go_with_fractions() {
+        for (x, whole) in
+            [(0.0, 0), (0.99, 0), (1.0, 1), (255.5, 255), (256.0, 0), (-0.25, 255), (-1e-9, 0), (-3.0, 253)]
+        {
+            assert_eq!(whole_repeats(x), whole, "{x}");
+        }
+        assert_eq!(whole_repeats(3.0e9), 3_000_000_000_u32 % 256);
     }
 }

@@ -54,9 +54,9 @@ fn scaled(name: &str, mut method: Method, factor: f32) -> Variant {
     (format!("{name} x {factor}"), method)
 }
 
-fn set_rules(method: &mut Method, thin: bool, gaps: bool) {
+fn set_rules(method: &mut Method, thin: bool, gaps: bool, probes: bool) {
     let compared = method.correction.compared().unwrap();
-    method.correction = Correction::Converged { compared, thin_only: thin, bridges: gaps };
+    method.correction = Correction::Converged { compared, thin_only: thin, bridges: gaps, probes };
 }
 
 fn tables() -> Vec<(&'static str, Vec<Variant>)> {
@@ -67,7 +67,7 @@ fn tables() -> Vec<(&'static str, Vec<Variant>)> {
     let visible = "object+shadow".parse().unwrap();
     let without_all = ours("without all five", |m| {
         (m.checks.second_pairs, m.checks.textures, m.reuse_shadows) = (false, TextureRule::Border, false);
-        set_rules(m, false, false);
+        set_rules(m, false, false, false);
     });
     let factors = [0.5, 1.0, 1.75, 2.0, 4.0];
     let mut equal: Vec<Variant> = factors.iter().map(|&f| scaled("paper", Method::paper(), f)).collect();
@@ -83,8 +83,8 @@ fn tables() -> Vec<(&'static str, Vec<Variant>)> {
                 ours("without second pairs", |m| m.checks.second_pairs = false),
                 ours("textures not joined", |m| m.checks.textures = TextureRule::Border),
                 ours("every light asked", |m| m.reuse_shadows = false),
-                ours("correction at edges and beside lines too", |m| set_rules(m, false, true)),
-                ours("no correction across gaps", |m| set_rules(m, true, false)),
+                ours("correction at edges and beside lines too", |m| set_rules(m, false, true, true)),
+                ours("no correction across gaps", |m| set_rules(m, true, false, true)),
                 without_all,
             ],
         ),

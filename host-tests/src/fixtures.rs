@@ -238,7 +238,7 @@ impl Stand {
         }
         let point = surface_point(&scene, o, d, &hit);
         let shadow_bits = shadow_test(&scene, &point, &KnownShadows::default(), &mut work);
-        let gcol = gather_secondary(&scene, &point, d, &mut work);
+        let gcol = gather_secondary(&scene, &point, d, &mut work).gcol;
         let shade = ShadePoint {
             material: point.material,
             position: point.position,
@@ -279,9 +279,10 @@ pub fn twin_renderer(scene: Scene) -> Renderer {
 /// The given mode and size with the paper's tolerances at all levels and without correction.
 pub fn options(mode: Mode, width: u32, height: u32, block: u32) -> RenderOptions {
     let method = Method::default();
-    let checks = Checks { second_pairs: false, textures: TextureRule::Border, ..method.checks };
+    let checks =
+        Checks { secondary_textures: false, second_pairs: false, textures: TextureRule::Border, ..method.checks };
     let checks = checks.at_all_levels(Tolerances::PAPER);
-    let method = Method { block, checks, correction: Correction::Off, ..method };
+    let method = Method { block, shifted_rows: false, checks, correction: Correction::Off, ..method };
     RenderOptions { width, height, mode, method, ..RenderOptions::default() }
 }
 
@@ -312,7 +313,7 @@ pub fn corrections() -> Vec<Correction> {
 
 /// Converged correction by the paper's rule alone: no neighbour is spared, no gap looked across.
 pub fn plainly_converged(compared: Compared) -> Correction {
-    Correction::Converged { compared, thin_only: false, bridges: false }
+    Correction::Converged { compared, thin_only: false, bridges: false, probes: false }
 }
 
 /// Draws a frame without the fall-back and keeps its attributes. Returns picture and statistics.

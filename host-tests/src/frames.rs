@@ -70,10 +70,11 @@ impl Prepared {
         Prepared { scene, prepared: Arc::new(prepared) }
     }
 
-    /// A built-in scene, [`zoo`], or [`crate::fixtures::dashes`] that fall and rise.
+    /// A built-in scene, [`zoo`], [`window`], or [`crate::fixtures::dashes`] that fall and rise.
     pub fn named(name: &str) -> Self {
         let scene = match name {
             "zoo" => zoo(),
+            "window" => window(),
             "dashes" => crate::fixtures::dashes(&[(12.3, 6.0), (52.3, -9.0)]),
             _ => builtin::to_scene(name).unwrap(),
         };
@@ -196,6 +197,27 @@ impl Drawn {
     pub fn classes_apart(&self, other: &Drawn) -> usize {
         self.classes.iter().zip(&other.classes).filter(|(a, b)| a != b).count()
     }
+}
+
+/// A wall whose texture coordinates go from -2 to 2. A pane hides its lower right quarter, and a mirror its upper left one;
+/// there the same texture is seen on a wall behind the camera.
+pub fn window() -> Scene {
+    use crate::fixtures::{ONCE, SceneBuilder, glass, matte, mirror, v};
+    let mut builder = SceneBuilder::new("window").camera(v(0.0, 0.0, 2.4), glam::Vec3::ZERO, 45.0);
+    builder = builder.light(v(0.5, 1.0, 2.0), 4.0).environment(0.3, glam::Vec3::ZERO);
+    let texels = (0..64u32).map(|i| if (i / 32 + i / 4) % 2 == 0 { 0xff30_4050 } else { 0xffe0_d0c0 - 0x21 * (i % 8) });
+    let texture = builder.texture(8, texels.collect());
+    let textured = rarefy::internal::scene::Material { diffuse_texture: Some(texture), ..matte(glam::Vec3::ONE) };
+    let corners = ONCE.map(|c| (2.0 * c - glam::Vec2::ONE) * 2.0);
+    builder.object(textured.clone());
+    builder.quad_with(corners.map(|c| c.extend(0.0)), corners);
+    builder.object(textured);
+    builder.quad_with(corners.map(|c| v(-c.x, c.y, 3.0)), corners);
+    builder.object(glass(Surface::ThinGlass, 1.5));
+    builder.wall(glam::Vec2::new(0.1, -2.0), glam::Vec2::new(2.0, -0.1), 0.2);
+    builder.object(mirror(0.9));
+    builder.wall(glam::Vec2::new(-2.0, 0.1), glam::Vec2::new(-0.1, 2.0), 0.1);
+    builder.build(4.0)
 }
 
 /// The built-in spheres with everything else that a kernel can meet: the clay sphere full of holes, its floor there

@@ -6,6 +6,7 @@ pub mod baked;
 pub mod clang;
 pub mod command;
 pub mod contexts;
+pub mod details;
 pub mod fixtures;
 pub mod frames;
 pub mod fuzz;

@@ -45,11 +45,13 @@ fn method(random: &mut Random) -> Method {
     let compared = compared(random);
     Method {
         block: any(random, &[2, 4]),
+        shifted_rows: flip(random),
         checks: Checks {
             tests: if flip(random) { TestSet::ALL } else { tests },
             fine: tolerances(random),
             coarse: tolerances(random),
             textures: any(random, &TextureRule::ALL),
+            secondary_textures: flip(random),
             gcol_space: any(random, &GcolSpace::ALL),
             second_pairs: flip(random),
         },
@@ -57,7 +59,9 @@ fn method(random: &mut Random) -> Method {
         correction: match random.below(5) {
             0 => Correction::Off,
             1 => Correction::Sweeps(compared),
-            _ => Correction::Converged { compared, thin_only: flip(random), bridges: flip(random) },
+            _ => {
+                Correction::Converged { compared, thin_only: flip(random), bridges: flip(random), probes: flip(random) }
+            }
         },
         reuse_shadows: flip(random),
     }

@@ -31,7 +31,8 @@ fn planes(renderer: &mut Renderer, options: &RenderOptions) -> Planes {
 
 fn planes_of(renderer: &mut Renderer, options: &RenderOptions, color: Vec<u32>) -> Planes {
     let mut plane = |plane| renderer.plane(plane).unwrap();
-    let class = plane(PLANE_CLASS);
+    // Without the repeats of textures, which no rule of correction reads.
+    let class = plane(PLANE_CLASS).into_iter().map(|word| word & (CLASS_MASK | CLASS_CHECKED)).collect();
     Planes { width: options.width as usize, class, object: plane(PLANE_OBJECT), shadow: plane(PLANE_SHADOW), color }
 }
 
@@ -128,7 +129,7 @@ impl Rules {
         let Rules { thin_only, bridges } = self;
         with(options, |method| {
             let compared = method.correction.compared().expect("a correction");
-            method.correction = Correction::Converged { compared, thin_only, bridges };
+            method.correction = Correction::Converged { compared, thin_only, bridges, probes: false };
         })
     }
 }

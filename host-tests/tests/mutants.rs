@@ -106,6 +106,8 @@ const STEP3A: Launch = (Stage::Step3a, Kernel::Check);
 const STEP3B_COUNT: Launch = (Stage::Step3b, Kernel::PackCount);
 const STEP3B_SCAN: Launch = (Stage::Step3b, Kernel::PackScan);
 const STEP3B_SCATTER: Launch = (Stage::Step3b, Kernel::PackScatter);
+const PROBE_COUNT: Launch = (Stage::Step4, Kernel::PackCount);
+const PROBE_SCATTER: Launch = (Stage::Step4, Kernel::PackScatter);
 const STEP3C: Launch = (Stage::Step3c, Kernel::Trace);
 const MARK: Launch = (Stage::Step4, Kernel::CorrectMark);
 const COUNT: Launch = (Stage::Step4, Kernel::CorrectCount);
@@ -126,10 +128,10 @@ const EVEN_ENTRY: &str = "list[step.list_offset + (item & ~1u)]";
 /// Each entry point on its own.
 #[rustfmt::skip]
 const ENTRY_POINTS: &[Mutant] = &[
-    ("trace.cl", "step.step_x * gx", "step.step_x * (gx & ~1u)", Shot::Zoo, STEP1),
+    ("trace.cl", "grid_pixel(frame, &step, gx, gy)", "grid_pixel(frame, &step, gx & ~1u, gy)", Shot::Zoo, STEP1),
     ("trace.cl", "gy >= step.grid_height", "gy + 1u >= step.grid_height", Shot::Zoo, STEP1),
-    ("check.cl", "step.step_y * gy", "step.step_y * (gy & ~1u)", Shot::Zoo, STEP2A),
-    ("check.cl", "step.step_x * gx", "step.step_x * (gx & ~1u)", Shot::Zoo, STEP3A),
+    ("check.cl", "grid_pixel(frame, &step, gx, gy)", "grid_pixel(frame, &step, gx, gy & ~1u)", Shot::Zoo, STEP2A),
+    ("check.cl", "grid_pixel(frame, &step, gx, gy)", "grid_pixel(frame, &step, gx & ~1u, gy)", Shot::Zoo, STEP3A),
     ("pack.cl", "chunk * 32u < step.item_count", "chunk * 64u < step.item_count", Shot::Zoo, STEP2B_COUNT),
     ("pack.cl", SCAN_LEVEL, SCAN_ONE_SHORT, Shot::Zoo, STEP2B_SCAN),
     ("pack.cl", "if (chunk < chunk_count)", "if (chunk < chunk_count / 2u)", Shot::Zoo, STEP2B_SCATTER),
@@ -144,7 +146,9 @@ const ENTRY_POINTS: &[Mutant] = &[
     ("trace.cl", "pixel & 0xffffu", "pixel & 0xfffeu", Shot::Zoo, STEP3C),
     ("common/correction.clh", "atomic_min(", "atomic_max(", Shot::Rods, MARK),
     ("correct.cl", "chunk * 32u < step.item_count", "chunk * 64u < step.item_count", Shot::Rods, COUNT),
+    ("pack.cl", "chunk * 32u < step.item_count", "chunk * 512u < step.item_count", Shot::Rods, PROBE_COUNT),
     ("pack.cl", SCAN_LEVEL, SCAN_ONE_SHORT, Shot::Rods, SCAN),
+    ("pack.cl", "if (chunk < chunk_count)", "if (chunk < 1u)", Shot::Large, PROBE_SCATTER),
     ("correct.cl", "if (chunk < chunk_count)", "if (chunk < chunk_count / 2u)", Shot::Rods, SCATTER),
     ("trace.cl", ENTRY, EVEN_ENTRY, Shot::Rods, RETRACE),
     ("correct_tail.cl", "begin = lane * share", "begin = lane", Shot::Rods, TAIL),
@@ -182,7 +186,7 @@ const CORRECTION: &[Mutant] = &[
     ("common/correction.clh", "attributes[PLANE_CLAIM * pitch + to] == i", "attributes[PLANE_CLAIM * pitch + to] != i", Shot::Rods, COUNT),
     ("common/ray_tree.clh", "? CLASS_CORRECTED : CLASS_CONFIRMED", "? CLASS_CORRECTED : CLASS_CORRECTED", Shot::Rods, RETRACE),
     ("common/ray_tree.clh", "out_attributes[PLANE_CLAIM * pitch + at] = NO_CLAIM", "out_attributes[PLANE_CLAIM * pitch + at] = 0u", Shot::Rods, RETRACE),
-    ("common/ray_tree.clh", "pixel_class == CLASS_BASE ? 0u : out_attributes[PLANE_CLASS * pitch + at] & ~CLASS_MASK", "0u", Shot::Zoo, STEP2C),
+    ("common/ray_tree.clh", "pixel_class == CLASS_BASE ? 0u : out_attributes[PLANE_CLASS * pitch + at] & CLASS_CHECKED", "0u", Shot::Zoo, STEP2C),
 ];
 
 /// Pixels across gaps.
@@ -336,16 +340,14 @@ const SIMILARITY: &[Mutant] = &[
     ("common/similarity.clh", "!= NO_TEXTURE", "== NO_TEXTURE", Shot::Room, STEP3A),
     ("common/similarity.clh", "a < t_tex && b > 1.0f - t_tex", "a < t_tex && b < 1.0f - t_tex", Shot::Paper, STEP2A),
     ("common/similarity.clh", "a->shadow_bits != b->shadow_bits", "(a->shadow_bits ^ b->shadow_bits) > 1u", Shot::Zoo, STEP2A),
-    ("common/similarity.clh", "<= step->t_gcol", "<= 8.0f * step->t_gcol", Shot::Zoo, STEP3A),
+    ("common/similarity.clh", "b->gcol, step->flags) <= step->t_gcol", "b->gcol, step->flags) <= 8.0f * step->t_gcol", Shot::Zoo, STEP3A),
     ("common/attributes.clh", "!(flags & STEP_GCOL_LINEAR)", "(flags & STEP_GCOL_LINEAR)", Shot::Zoo, STEP2A),
     ("common/attributes.clh", "(p > q ? p - q : q - p) >= t_visible", "(p > q ? p - q : 0u) >= t_visible", Shot::Zoo, MARK),
     ("common/attributes.clh", "(step->flags & STEP_COMPARE_SHADING)", "(step->flags & STEP_GCOL_LINEAR)", Shot::Zoo, MARK),
-    ("common/similarity.clh", "return min2(e, 1.0f - e)", "return e", Shot::Room, STEP2A),
-    ("common/similarity.clh", "a - b > 0.5f ? b + 1.0f", "a - b > 0.5f ? b", Shot::Room, STEP3A),
-    ("common/similarity.clh", "b - a > 0.5f ? b - 1.0f", "b - a > 0.5f ? b", Shot::Room, STEP3A),
-    ("common/similarity.clh", "m.t = fraction1(m.t)", "m.t = m.t", Shot::Room, STEP3A),
     ("common/similarity.clh", "k < 3u", "k < 1u", Shot::Zoo, STEP3A),
-    ("common/similarity.clh", "k == 1u ? d : 0u - d", "d", Shot::Zoo, STEP3A),
+    ("common/similarity.clh", "k == 1u ? dy : 0u - dy", "dy", Shot::Zoo, STEP3A),
+    ("common/similarity.clh", "((b_is_wide && ", "((", Shot::Zoo, STEP3A),
+    ("common/similarity.clh", "(a_is_wide && ", "(", Shot::Zoo, STEP3A),
     ("common/similarity.clh", "*b = q;", "", Shot::Zoo, STEP3A),
     ("common/similarity.clh", "step, b, &p)", "step, a, &p)", Shot::Zoo, STEP3A),
     ("common/similarity.clh", "wa = zb / (za + zb)", "wa = za / (za + zb)", Shot::Zoo, STEP3A),
@@ -353,12 +355,13 @@ const SIMILARITY: &[Mutant] = &[
     ("common/similarity.clh", "m.gcol = a->gcol * wa + b->gcol * wb", "m.gcol = a->gcol", Shot::Zoo, STEP3A),
     ("common/similarity.clh", "x + step->reference_dx >= frame->width", "x + step->reference_dx > frame->width", Shot::Zoo, STEP2A),
     ("common/similarity.clh", "attributes[PLANE_CLAIM * pitch + at] = NO_CLAIM", "attributes[PLANE_CLAIM * pitch + at] = 0u", Shot::Zoo, STEP3A),
-    ("common/attributes.clh", "a.s = unpack_texcoord(texcoord & 0xffffu)", "a.s = unpack_texcoord(texcoord >> 16)", Shot::Room, STEP2A),
+    ("common/attributes.clh", "unpack_texcoord(texcoord & 0xffffu)", "unpack_texcoord(texcoord >> 16)", Shot::Room, STEP2A),
 ];
 
 /// Packing.
 #[rustfmt::skip]
 const PACKING: &[Mutant] = &[
+    ("common/pack_order.clh", "wanted = CLASS_INTERPOLATED;", "", Shot::Rods, PROBE_COUNT),
     ("common/pack.clh", "k < 32u &&", "k < 31u &&", Shot::Zoo, STEP2B_COUNT),
     ("common/pack.clh", "popcount(mask)", "popcount(mask >> 1)", Shot::Zoo, STEP3B_COUNT),
     ("common/pack.clh", "lane >= stride ?", "lane > stride ?", Shot::Rods, SCAN),
@@ -409,9 +412,10 @@ fn every_broken_line_is_caught(mutants: impl IntoIterator<Item = &'static Mutant
     if no_opencl() {
         return;
     }
-    // For whoever changes one kernel: only mutants of this file.
+    // For whoever changes one kernel: only mutants of a file, or of lines, that have one of these parts.
     let only = std::env::var("MUTANTS_OF").unwrap_or_default();
-    let mutants: Vec<&Mutant> = mutants.into_iter().filter(|mutant| mutant.0.contains(&only)).collect();
+    let is_wanted = |m: &&Mutant| only.split('|').any(|part| m.0.contains(part) || m.1.contains(part));
+    let mutants: Vec<&Mutant> = mutants.into_iter().filter(is_wanted).collect();
     let mut scenes: HashMap<&str, Prepared> = HashMap::new();
     let mut sound: BTreeSet<String> = BTreeSet::new();
     let mut missed = Vec::new();

@@ -44,6 +44,9 @@ pub struct MethodArgs {
     /// Side of the blocks of which one pixel is always traced: 2, or 4 for two levels.
     #[arg(long, value_name = "2|4")]
     pub blocks: Option<u32>,
+    /// Whether base pixels of successive rows of blocks lie in different columns; in the paper they do not.
+    #[arg(long, value_name = "true|false")]
+    pub shifted_rows: Option<bool>,
     /// G2: largest distance of two references, as a share of the scene's extent. As for all tolerances of tests: one
     /// number counts at both levels of blocks, FINE,COARSE at references two and four pixels apart.
     #[arg(long, value_parser = levels, allow_hyphen_values = true, value_name = "SHARE")]
@@ -54,7 +57,7 @@ pub struct MethodArgs {
     /// G4: sine of the slope below which a surface counts as flat.
     #[arg(long, value_parser = levels, allow_hyphen_values = true, value_name = "SINE")]
     pub t_conv: Option<Levels>,
-    /// TX: how far apart texture coordinates may be; with `--textures border` how near to the border of its repetition
+    /// TX: how many repetitions texture coordinates may lie apart; with `--textures border` how near to the border of its repetition
     /// one counts as at the border.
     #[arg(long, value_parser = levels, allow_hyphen_values = true, value_name = "SHARE")]
     pub t_tex: Option<Levels>,
@@ -64,12 +67,15 @@ pub struct MethodArgs {
     /// Tests to switch off, such as gc,tx.
     #[arg(long, value_parser = named::<Test>, value_delimiter = ',', value_name = "TEST,...")]
     pub disable_test: Vec<Test>,
-    /// TX: compare texture coordinates the shorter way around, or by the border of their repetition as in the paper.
+    /// TX: compare texture coordinates with their whole repetitions, or by the border of one as in the paper.
     #[arg(long, value_parser = named::<TextureRule>, value_name = "joined|border")]
     pub textures: Option<TextureRule>,
     /// Compare reflected colours as displayed, or linearly.
     #[arg(long, value_parser = named::<GcolSpace>, value_name = "display|linear")]
     pub gcol_space: Option<GcolSpace>,
+    /// GC: whether it looks for texture between what two references see in a mirror or behind glass.
+    #[arg(long, value_name = "true|false")]
+    pub secondary_textures: Option<bool>,
     /// Whether a pixel whose upper and lower references differ may lie between two others.
     #[arg(long, value_name = "true|false")]
     pub second_pairs: Option<bool>,
@@ -101,6 +107,9 @@ pub struct MethodArgs {
     /// Converged post-correction: look across the gaps of lines thinner than a pixel?
     #[arg(long, value_name = "true|false")]
     pub correction_bridges: Option<bool>,
+    /// Converged post-correction: trace one pixel of every 16x16 that nothing has asked for?
+    #[arg(long, value_name = "true|false")]
+    pub correction_probes: Option<bool>,
 }
 
 fn set<T>(field: &mut T, given: Option<T>) {
@@ -117,6 +126,7 @@ impl MethodArgs {
     pub fn method(&self) -> Result<Method> {
         let mut method = Method::from(self.method);
         set(&mut method.block, self.blocks);
+        set(&mut method.shifted_rows, self.shifted_rows);
         let checks = &mut method.checks;
         for (tolerances, level) in
             [(&mut checks.fine, (|l| l.fine) as fn(Levels) -> f32), (&mut checks.coarse, |l| l.coarse)]
@@ -129,6 +139,7 @@ impl MethodArgs {
         }
         set(&mut checks.textures, self.textures);
         set(&mut checks.gcol_space, self.gcol_space);
+        set(&mut checks.secondary_textures, self.secondary_textures);
         set(&mut checks.second_pairs, self.second_pairs);
         for &test in &self.disable_test {
             checks.tests = checks.tests.without(test);
@@ -150,13 +161,14 @@ impl MethodArgs {
         if let Some(spread) = self.correction_method {
             correction = correction.spreading(spread);
         }
-        let (mut visible, mut norm, mut gcol, mut thin, mut gaps) = (None, None, None, None, None);
+        let (mut visible, mut norm, mut gcol) = (None, None, None);
+        let (mut thin, mut gaps, mut chance) = (None, None, None);
         match &mut correction {
             Correction::Off => {}
             Correction::Sweeps(compared) => (visible, norm, gcol) = tolerances(compared),
-            Correction::Converged { compared, thin_only, bridges } => {
+            Correction::Converged { compared, thin_only, bridges, probes } => {
                 (visible, norm, gcol) = tolerances(compared);
-                (thin, gaps) = (Some(thin_only), Some(bridges));
+                (thin, gaps, chance) = (Some(thin_only), Some(bridges), Some(probes));
             }
         }
         give("--correction-t-visible", visible, self.correction_t_visible)?;
@@ -164,6 +176,7 @@ impl MethodArgs {
         give("--correction-t-gcol", gcol, self.correction_t_gcol)?;
         give("--correction-thin-only", thin, self.correction_thin_only)?;
         give("--correction-bridges", gaps, self.correction_bridges)?;
+        give("--correction-probes", chance, self.correction_probes)?;
         if correction == Correction::Off && self.correction_method.is_some() {
             return Err(unused("--correction-method"));
         }

@@ -194,7 +194,7 @@ impl Kernel {
 }
 
 /// Every launch of the method: the stage, its kernel, and the label of both.
-pub const LAUNCHES: [(Stage, Kernel, &str); 18] = [
+pub const LAUNCHES: [(Stage, Kernel, &str); 20] = [
     (Stage::Step1, Kernel::Trace, "step1/trace"),
     (Stage::Step2a, Kernel::Check, "step2a/check"),
     (Stage::Step2b, Kernel::PackCount, "step2b/pack_count"),
@@ -212,6 +212,8 @@ pub const LAUNCHES: [(Stage, Kernel, &str); 18] = [
     (Stage::Step4, Kernel::CorrectScatter, "step4/correct_scatter"),
     (Stage::Step4, Kernel::Trace, "step4/trace"),
     (Stage::Step4, Kernel::CorrectTail, "step4/correct_tail"),
+    (Stage::Step4, Kernel::PackCount, "step4/pack_count"),
+    (Stage::Step4, Kernel::PackScatter, "step4/pack_scatter"),
     (Stage::Step4, Kernel::CorrectSweep, "step4/correct_sweep"),
 ];
 
@@ -249,7 +251,7 @@ impl Kernel {
             Kernel::Check | Kernel::CorrectSweep => &[Scene, Step, Attributes, Color, Counters],
             Kernel::PackCount => &[Frame, Step, Attributes, Masks, Sums],
             Kernel::PackScan => &[Step, Sums, Scratch],
-            Kernel::PackScatter => &[Step, Masks, Sums, List],
+            Kernel::PackScatter => &[Frame, Step, Masks, Sums, List],
             Kernel::CorrectMark => &[Frame, Step, Attributes, List, Color],
             Kernel::CorrectCount => &[Frame, Step, Attributes, List, Masks, Sums],
             Kernel::CorrectScatter => &[Frame, Step, Attributes, Masks, Sums, List, List],

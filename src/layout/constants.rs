@@ -28,18 +28,21 @@ shared_constants! {
     PLANE_GCOL_B = 5;
     /// Attribute plane: the unit shading normal ([`crate::math::pack_normal`]).
     PLANE_NORMAL = 6;
-    /// Attribute plane: texture coordinates in `[0, 1)` ([`crate::math::pack_texcoord`]).
+    /// Attribute plane: fractions of the texture coordinates ([`crate::math::pack_texcoord`]).
     PLANE_TEXCOORD = 7;
     /// Attribute plane: object id, or [`NO_OBJECT`].
     PLANE_OBJECT = 8;
     /// Attribute plane: shadow bits, one per light.
     PLANE_SHADOW = 9;
-    /// Attribute plane: pixel class (`CLASS_*`) in the low bits, fail mask (`FAIL_*`) above.
+    /// Attribute plane: pixel class (`CLASS_*`) in the low bits, fail mask (`FAIL_*`) above, whole repeats of textures above
+    /// that.
     PLANE_CLASS = 10;
     /// Attribute plane: step4's claims, the lowest item that wants the pixel; in sources, the pixel across a gap.
     PLANE_CLAIM = 11;
-    /// Number of attribute planes: 48 bytes a sample.
-    PLANE_COUNT = 12;
+    /// Attribute plane: the object seen in a mirror or behind glass, or [`NO_OBJECT`].
+    PLANE_BEHIND = 12;
+    /// Number of attribute planes: 52 bytes a sample.
+    PLANE_COUNT = 13;
 
     /// Counter plane: inner kd-tree nodes visited.
     COUNTER_TRAVERSAL_STEPS = 0;
@@ -92,6 +95,12 @@ shared_constants! {
 
     /// Class-plane bit: a reference of this pixel is a mirror or glass, so that its ray may send secondary rays.
     CLASS_SECONDARY = 1 << 15;
+    /// Class-plane bits that a pixel's check wrote above the class.
+    CLASS_CHECKED = 0xff << 8;
+    /// Where in the class plane the whole repeats of texture coordinate s lie, modulo 256.
+    CLASS_REPEATS_S = 16;
+    /// Those of t.
+    CLASS_REPEATS_T = 24;
 
     /// Step flag: write attributes and class.
     STEP_STORE = 1;
@@ -109,13 +118,21 @@ shared_constants! {
     STEP_THIN_ONLY = 64;
     /// Step flag: a pixel whose own references fail may be interpolated between other neighbours.
     STEP_OTHER_PAIRS = 128;
-    /// Step flag: texture coordinates are compared and interpolated the shorter way around.
+    /// Step flag: texture coordinates are compared and interpolated across repetitions.
     STEP_UNWRAP = 256;
     /// Step flag: lights about which a traced pixel's references agree need no shadow ray.
     STEP_REUSE_SHADOWS = 512;
     /// Step flag: in step4 sources also look for pixels between two parts of something thin.
     STEP_BRIDGE = 1024;
+    /// Step flag: the rows of a grid are shifted against each other.
+    STEP_SHIFTED = 2048;
+    /// Step flag: the grid's items are probes of step4, one in each tile of the picture.
+    STEP_PROBES = 4096;
+    /// Step flag: GC looks for texture between the points that two references see in a mirror or behind glass.
+    STEP_BEHIND = 8192;
 
+    /// Side of the square tiles that have a probe each.
+    PROBE_TILE = 16;
     /// Items of a source in step4's first round: four neighbours and a pixel across a gap. Later rounds have four.
     STEP4_WAYS_MOST = 5;
     /// How many columns to either side step4 looks for the other part of something thin.

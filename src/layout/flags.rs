@@ -27,12 +27,18 @@ bitflags! {
         const THIN_ONLY = STEP_THIN_ONLY;
         /// A pixel whose own references fail may be interpolated between other neighbours.
         const OTHER_PAIRS = STEP_OTHER_PAIRS;
-        /// Texture coordinates are compared and interpolated the shorter way around.
+        /// Texture coordinates are compared and interpolated across repetitions.
         const UNWRAP = STEP_UNWRAP;
         /// Lights about which a traced pixel's references agree need no shadow ray.
         const REUSE_SHADOWS = STEP_REUSE_SHADOWS;
         /// Sources also look for pixels between two parts of something thin.
         const BRIDGE = STEP_BRIDGE;
+        /// The rows of a grid are shifted against each other.
+        const SHIFTED = STEP_SHIFTED;
+        /// The grid's items are probes of post-correction, one in each tile of the picture.
+        const PROBES = STEP_PROBES;
+        /// GC looks for texture between the points that two references see in a mirror or behind glass.
+        const BEHIND = STEP_BEHIND;
     }
 }
 

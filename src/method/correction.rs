@@ -17,7 +17,9 @@ pub(super) fn correct(queue: &mut Queue, options: &RenderOptions, seeds: &SeedRa
     let step = StepParams { list_end, pixel_class: CLASS_CORRECTED, ..step };
     match options.method.correction {
         Correction::Off => Ok(0),
-        Correction::Converged { bridges, .. } => correct_converged(queue, &step, bridges, seeds, listed),
+        Correction::Converged { bridges, probes, .. } => {
+            correct_converged(queue, &step, bridges, probes, seeds, listed)
+        }
         Correction::Sweeps(_) => correct_by_sweeps(queue, &step),
     }
 }
@@ -27,6 +29,7 @@ fn correct_converged(
     queue: &mut Queue,
     step: &StepParams,
     bridges: bool,
+    probes: bool,
     seeds: &SeedRanges,
     listed: u32,
 ) -> Result<u32> {
@@ -44,6 +47,11 @@ fn correct_converged(
         trace_list(queue, Stage::Step4, &fire)?;
         list_offset += fire_from(queue, step, seeds.settled, seeds.fired, list_offset)?;
     }
+    if probes && seeds.first_time {
+        let count = list_probes(queue, step, list_offset)?;
+        trace_list(queue, Stage::Step4, &StepParams { item_count: count, list_offset, ..*step })?;
+        list_offset += count;
+    }
     let mut source_offset = listed;
     while list_offset > source_offset {
         let sources = list_offset - source_offset;
@@ -59,6 +67,25 @@ fn correct_converged(
         };
     }
     Ok(list_offset - listed)
+}
+
+/// Lists one interpolated pixel in each tile of the interior, to be traced for no reason: what no ray has met is found by
+/// chance or not at all.
+fn list_probes(queue: &mut Queue, step: &StepParams, list_offset: u32) -> Result<u32> {
+    let frame = *queue.params();
+    let first = frame.interior_begin / PROBE_TILE;
+    let grid = StepParams {
+        flags: step.flags | StepFlags::PROBES,
+        origin_y: first,
+        step_x: 1,
+        step_y: 1,
+        grid_width: frame.width.div_ceil(PROBE_TILE),
+        grid_height: frame.interior_end.div_ceil(PROBE_TILE) - first,
+        ..*step
+    };
+    let packing = Packing { stage: Stage::Step4, count: Kernel::PackCount, scatter: Kernel::PackScatter };
+    // The first half of the items: there is no second order to go through.
+    pack(queue, &packing, &StepParams { item_count: grid_items(&grid), list_offset, ..grid })
 }
 
 /// One round: the listed `sources` fire; what they hit is listed and traced. Returns how many pixels that is.

@@ -64,11 +64,9 @@ pub struct PixelCounts {
 }
 
 impl PixelCounts {
-    /// The counts of an adaptive frame's interior rows, of which so many pixels were traced and corrected.
-    pub fn new(frame: &FrameParams, traced: u64, corrected: u64) -> Self {
-        let rows = frame.interior_end - frame.interior_begin;
-        let base = u64::from(frame.phase_width) * u64::from(rows.div_ceil(frame.block));
-        let pixels = u64::from(frame.width) * u64::from(rows);
+    /// The counts of a frame's interior rows, of which so many pixels were base pixels, traced and corrected.
+    pub fn new(frame: &FrameParams, base: u64, traced: u64, corrected: u64) -> Self {
+        let pixels = u64::from(frame.width) * u64::from(frame.interior_end - frame.interior_begin);
         PixelCounts { base, traced, corrected, interpolated: pixels - base - traced - corrected }
     }
 

@@ -9,13 +9,17 @@ use crate::method::options::RenderOptions;
 const PACKED_RAY_COST: f64 = 1.5;
 /// What checking, interpolating and packing cost per adaptive pixel, in average rays.
 const CHECK_COST: f64 = 0.06;
+/// Where correction traces more than this share of the pixels that had been interpolated, detail is finer than the grid of
+/// samples, and much of it is lost.
+const MOST_CORRECTED: f64 = 0.125;
 /// After this many full frames the method gets another try: the view may have become easier.
 const FRAMES_BEFORE_RETRY: u32 = 30;
 
 /// Decides from each adaptive frame's own counters whether the following ones should be full.
 ///
 /// An adaptive frame is taken to cost `base + 1.5 (traced + corrected) + 0.06 (all - base)` average rays; if that is
-/// not less than one ray a pixel, the next 30 frames with the same options are traced in full.
+/// not less than one ray a pixel, or if correction traced more than an eighth of what had been interpolated, the next 30
+/// frames with the same options are traced in full.
 #[derive(Debug, Clone, Default)]
 pub struct Fallback {
     options: Option<RenderOptions>,
@@ -35,8 +39,14 @@ impl Fallback {
     /// Takes in what an adaptive frame did.
     pub fn learn(&mut self, options: &RenderOptions, pixels: &PixelCounts) {
         self.options = Some(options.clone());
-        self.full_frames_left = if modelled_cost(pixels) >= 1.0 { FRAMES_BEFORE_RETRY } else { 0 };
+        self.full_frames_left = if does_not_pay(pixels) { FRAMES_BEFORE_RETRY } else { 0 };
     }
+}
+
+/// Whether a frame like this one should be traced in full: it costs as much, or interpolation is too often wrong.
+pub fn does_not_pay(pixels: &PixelCounts) -> bool {
+    let rebuilt = pixels.interpolated + pixels.corrected;
+    modelled_cost(pixels) >= 1.0 || pixels.corrected as f64 > MOST_CORRECTED * rebuilt as f64
 }
 
 /// Modelled cost of an adaptive frame over that of a full one.
@@ -57,6 +67,10 @@ mod tests {
         let mut fallback = Fallback::default();
         fallback.learn(&options, &PixelCounts { base: 25, traced: 6, interpolated: 68, corrected: 1 });
         assert!(!fallback.choose_full(&options));
+        fallback.learn(&options, &PixelCounts { base: 250, traced: 60, interpolated: 610, corrected: 80 });
+        assert!(!fallback.choose_full(&options));
+        fallback.learn(&options, &PixelCounts { base: 250, traced: 60, interpolated: 590, corrected: 100 });
+        assert!(fallback.choose_full(&options), "a seventh of what was interpolated was traced after all");
         fallback.learn(&options, &PixelCounts { base: 25, traced: 60, interpolated: 10, corrected: 5 });
         for _ in 0..FRAMES_BEFORE_RETRY {
             assert!(fallback.choose_full(&options));

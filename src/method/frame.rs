@@ -10,6 +10,7 @@ use super::window::{CorrectionSeeds, adaptive_window, trace_window};
 use crate::device::frame_memory::{FrameBuffer, FrameInputs};
 use crate::device::queue::Queue;
 use crate::error::{Error, Remedy, Result, Setting};
+use crate::layout::base_pixels;
 use crate::method::options::{Correction, Mode, RenderOptions};
 
 /// Rows of the first window that repairs a band; each further one of the same chain has twice as many.
@@ -95,9 +96,9 @@ impl FrameInProgress<'_> {
 
     /// Traces every pixel of a band.
     fn trace_band(&mut self, queue: &mut Queue, rows: Range<u32>) -> Result<()> {
-        self.begin(queue, rows)?;
+        self.begin(queue, rows.clone())?;
         trace_window(queue, self.keep.attributes())?;
-        let counts = PixelCounts::new(queue.params(), 0, 0);
+        let counts = PixelCounts::new(queue.params(), self.base_pixels(&rows), 0, 0);
         self.counts.add(&counts);
         self.sums.primary += counts.base;
         if self.keep.counters {
@@ -112,7 +113,8 @@ impl FrameInProgress<'_> {
         self.begin(queue, rows.clone())?;
         let seeds = CorrectionSeeds { settled: None, fired: &fired };
         let (traced, corrected) = self.draw_window(queue, &rows, &seeds, chains)?;
-        self.counts.add(&PixelCounts::new(queue.params(), traced, corrected.len));
+        let base = self.base_pixels(&rows);
+        self.counts.add(&PixelCounts::new(queue.params(), base, traced, corrected.len));
         self.collected.take(queue, NewPixels::Interior)
     }
 
@@ -144,6 +146,11 @@ impl FrameInProgress<'_> {
         self.collected.take(queue, NewPixels::Listed(&corrected.pixels))
     }
 
+    /// How many base pixels these rows have.
+    fn base_pixels(&self, rows: &Range<u32>) -> u64 {
+        base_pixels(&self.inputs.params, rows.clone(), self.options.method.shifted_rows)
+    }
+
     fn begin(&mut self, queue: &mut Queue, rows: Range<u32>) -> Result<()> {
         queue.begin(&self.inputs.window(self.plan.window(rows)))
     }
@@ -158,8 +165,8 @@ impl FrameInProgress<'_> {
     ) -> Result<(u64, Corrected)> {
         let listed = adaptive_window(queue, self.options, self.extent, seeds)?;
         let window = queue.params();
-        let base_rows = (window.window_end - window.window_begin).div_ceil(window.block);
-        self.sums.primary += u64::from(window.phase_width) * u64::from(base_rows) + listed.traced().len() as u64;
+        let base = self.base_pixels(&(window.window_begin..window.window_end));
+        self.sums.primary += base + listed.traced().len() as u64;
         let (traced, corrected) = if self.plan.is_one_band() {
             // All is interior, and no chain leaves it: nobody asks which pixels these are.
             let corrected = Corrected { len: listed.corrected().len() as u64, pixels: Vec::new() };

@@ -49,22 +49,20 @@ pub fn adaptive_window(
     seeds: &CorrectionSeeds,
 ) -> Result<ListRanges> {
     let frame = *queue.params();
+    let shifted = options.method.shifted_rows;
     let base = grid(&frame, (0, 0), (frame.block, frame.block));
-    let base = StepParams { flags: StepFlags::STORE, pixel_class: CLASS_BASE, ..base };
+    let base = if shifted { shifted_rows(&frame, base) } else { base };
+    let base = StepParams { flags: base.flags | StepFlags::STORE, pixel_class: CLASS_BASE, ..base };
     queue.launch(Stage::Step1, Kernel::Trace, &base)?;
 
     let seeds = list_seeds(queue, seeds)?;
     let mut listed = seeds.len();
-    let mut stride = frame.block;
-    while stride >= 2 {
-        for class in adaptive_grids(&frame, stride, options, extent) {
-            queue.launch(class.stages.check, Kernel::Check, &class.params)?;
-            let count = pack_grid(queue, &class, listed)?;
-            let list = StepParams { list_offset: listed, item_count: count, pixel_class: CLASS_TRACED, ..class.params };
-            trace_list(queue, class.stages.trace, &list)?;
-            listed += count;
-        }
-        stride /= 2;
+    for class in adaptive_grids(&frame, options, extent) {
+        queue.launch(class.stages.check, Kernel::Check, &class.params)?;
+        let count = pack_grid(queue, &class, listed)?;
+        let list = StepParams { list_offset: listed, item_count: count, pixel_class: CLASS_TRACED, ..class.params };
+        trace_list(queue, class.stages.trace, &list)?;
+        listed += count;
     }
 
     let corrected = correct(queue, options, &seeds, listed)?;
@@ -126,22 +124,53 @@ fn grid(frame: &FrameParams, origin: (u32, u32), step: (u32, u32)) -> StepParams
     }
 }
 
-/// The classes of adaptive pixels at one stride: A1 between two references in a row, A2 between two in a column; the odd
-/// columns of A2 by themselves where they may also use what the even ones found.
-fn adaptive_grids(frame: &FrameParams, stride: u32, options: &RenderOptions, extent: f32) -> Vec<AdaptiveGrid> {
-    let half = stride / 2;
-    let checks = |step| options.method.check_params(step, stride == 2, extent);
-    let step2 = checks(StepParams { reference_dx: half, ..grid(frame, (half, 0), (stride, stride)) });
-    let step3 = |left, width| checks(StepParams { reference_dy: half, ..grid(frame, (left, half), (width, stride)) });
-    let a1 = AdaptiveGrid { stages: A1, params: step2 };
-    let a2 = |params| AdaptiveGrid { stages: A2, params };
-    if options.method.checks.second_pairs {
-        let odd = step3(half, stride);
-        let odd = StepParams { flags: odd.flags | StepFlags::OTHER_PAIRS, ..odd };
-        vec![a1, a2(step3(0, stride)), a2(odd)]
+/// `grid`, which begins at the left border, with its rows shifted against each other.
+fn shifted_rows(frame: &FrameParams, grid: StepParams) -> StepParams {
+    StepParams { flags: grid.flags | StepFlags::SHIFTED, grid_width: frame.width.div_ceil(grid.step_x), ..grid }
+}
+
+/// The classes of adaptive pixels, in their order: at each stride A1, between two references in a row, and A2, between two
+/// in a column. Where rows are shifted, the rows of base pixels are filled at all strides before any others: only then
+/// each of their pixels has one above or below.
+fn adaptive_grids(frame: &FrameParams, options: &RenderOptions, extent: f32) -> Vec<AdaptiveGrid> {
+    let strides: &[u32] = if frame.block == 4 { &[4, 2] } else { &[2] };
+    let mut grids = Vec::new();
+    if options.method.shifted_rows {
+        grids.extend(strides.iter().map(|&stride| {
+            let class = a1(frame, stride, frame.block, options, extent);
+            AdaptiveGrid { params: shifted_rows(frame, class.params), ..class }
+        }));
+        grids.extend(strides.iter().flat_map(|&stride| a2(frame, stride, 1, options, extent)));
     } else {
-        vec![a1, a2(step3(0, half))]
+        for &stride in strides {
+            grids.push(a1(frame, stride, stride, options, extent));
+            grids.extend(a2(frame, stride, stride / 2, options, extent));
+        }
     }
+    grids
+}
+
+/// The pixels midway between two in rows that lie `row_step` apart.
+fn a1(frame: &FrameParams, stride: u32, row_step: u32, options: &RenderOptions, extent: f32) -> AdaptiveGrid {
+    let half = stride / 2;
+    let params = StepParams { reference_dx: half, ..grid(frame, (half, 0), (stride, row_step)) };
+    AdaptiveGrid { stages: A1, params: options.method.check_params(params, stride == 2, extent) }
+}
+
+/// The pixels midway between two in columns that lie `column_step` apart; every second column by itself where its pixels may
+/// also use what the others found.
+fn a2(frame: &FrameParams, stride: u32, column_step: u32, options: &RenderOptions, extent: f32) -> Vec<AdaptiveGrid> {
+    let half = stride / 2;
+    let columns = |left, width| {
+        let params = StepParams { reference_dy: half, ..grid(frame, (left, half), (width, stride)) };
+        AdaptiveGrid { stages: A2, params: options.method.check_params(params, stride == 2, extent) }
+    };
+    if !options.method.checks.second_pairs {
+        return vec![columns(0, column_step)];
+    }
+    let mut odd = columns(column_step, 2 * column_step);
+    odd.params.flags |= StepFlags::OTHER_PAIRS;
+    vec![columns(0, 2 * column_step), odd]
 }
 
 /// Packs the pixels of a class that wait for rays behind the `list_offset` entries that the list holds already.

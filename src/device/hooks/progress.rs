@@ -7,7 +7,7 @@ use crate::device::launch::Launch;
 use crate::device::queue::Hook;
 use crate::device::stage::Stage;
 use crate::error::Result;
-use crate::layout::{FrameParams, color_index};
+use crate::layout::{FrameParams, StepFlags, base_shift, color_index};
 use crate::monitor::{Monitor, Preview};
 
 /// A share of an adaptive window's time at which each stage begins, in the order of [`Stage::ALL`]; for progress only.
@@ -44,8 +44,8 @@ impl Progress {
     }
 
     /// Shows the base pixels of the window's interior, unless they were shown before it was repaired.
-    fn preview(&mut self, executor: &mut dyn Executor, frame: &FrameHandle) -> Result<()> {
-        let window = frame.params();
+    fn preview(&mut self, executor: &mut dyn Executor, launch: &Launch) -> Result<()> {
+        let (frame, window) = (launch.frame, launch.frame.params());
         if window.block == 1 || !self.monitor.wants_previews() || window.interior_begin < self.shown_rows {
             return Ok(());
         }
@@ -53,8 +53,18 @@ impl Progress {
         let (rows, block) = (window.interior_begin..window.interior_end, window.block as usize);
         let first = color_index(window, 0, rows.start) as usize;
         let words = executor.read(frame, FrameBuffer::Color, first..color_index(window, 0, rows.end) as usize)?;
-        let base_rows = words.chunks(window.width.max(1) as usize).step_by(block);
-        let pixels: Vec<u32> = base_rows.flat_map(|row| row.iter().copied().step_by(block)).collect();
+        let shifted = launch.step.flags.contains(StepFlags::SHIFTED);
+        let columns = window.width.div_ceil(window.block) as usize;
+        let base_rows = words.chunks(window.width.max(1) as usize).step_by(block).zip(rows.clone().step_by(block));
+        let pixels: Vec<u32> = base_rows
+            .flat_map(|(row, y)| {
+                let shift = if shifted { base_shift(window.block, y) as usize } else { 0 };
+                // A row that begins farther to the right may have one base pixel less, and in a narrow picture none.
+                let base = row.iter().copied().skip(shift).step_by(block);
+                let last = base.clone().next_back().unwrap_or_default();
+                base.chain(std::iter::repeat(last)).take(columns)
+            })
+            .collect();
         self.monitor.show(Preview {
             width: window.width.div_ceil(window.block),
             height: window.height.div_ceil(window.block),
@@ -77,6 +87,6 @@ impl Hook for Progress {
     }
 
     fn after(&mut self, executor: &mut dyn Executor, launch: &Launch) -> Result<()> {
-        if launch.stage == Stage::Step1 { self.preview(executor, launch.frame) } else { Ok(()) }
+        if launch.stage == Stage::Step1 { self.preview(executor, launch) } else { Ok(()) }
     }
 }

@@ -38,7 +38,7 @@ pub fn known_shadows(
     let at = plane_index(frame, x, y);
     if pixel_class == CLASS_TRACED {
         let (dx, dy) = (step.reference_dx, step.reference_dy);
-        if x + dx >= frame.width || y + dy >= frame.height {
+        if x < dx || x + dx >= frame.width || y + dy >= frame.height {
             return nothing;
         }
         if !surface_is_sure(FailMask::of_class(plane(PLANE_CLASS, at))) {

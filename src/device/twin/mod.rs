@@ -115,16 +115,11 @@ fn item_1d(kernel: Kernel, scene: &SceneArgs, step: &StepParams, i: u32, buffers
         Kernel::Check => unreachable!("a kernel over a grid runs in two dimensions"),
         Kernel::PackCount => pack::pack_count(scene, step, i, buffers),
         Kernel::PackScan => pack::pack_scan(step, i, buffers),
-        Kernel::PackScatter => pack::pack_scatter(step, i, buffers),
+        Kernel::PackScatter => pack::pack_scatter(scene, step, i, buffers),
         Kernel::CorrectMark => correct::correct_mark(scene, step, i, buffers),
         Kernel::CorrectCount => correct::correct_count(scene, step, i, buffers),
         Kernel::CorrectScatter => correct::correct_scatter(scene, step, i, buffers),
         Kernel::CorrectTail => unreachable!("a kernel of one work-group has no items"),
         Kernel::CorrectSweep => correct_sweep::correct_sweep(scene, step, i, buffers),
     }
-}
-
-/// The pixel of a grid's item.
-fn grid_pixel(step: &StepParams, gx: u32, gy: u32) -> (u32, u32) {
-    (step.origin_x + step.step_x * gx, step.origin_y + step.step_y * gy)
 }

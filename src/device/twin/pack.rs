@@ -18,8 +18,8 @@ pub fn pack_scan(step: &StepParams, group: u32, buffers: &FrameBuffers) {
 }
 
 /// One work-item of `pack_scatter`.
-pub fn pack_scatter(step: &StepParams, chunk: u32, buffers: &FrameBuffers) {
-    scatter(chunk, step, &buffers.masks, &buffers.sums, &buffers.list, |i| grid_item_pixel(step, i));
+pub fn pack_scatter(scene: &SceneArgs, step: &StepParams, chunk: u32, buffers: &FrameBuffers) {
+    scatter(chunk, step, &buffers.masks, &buffers.sums, &buffers.list, |i| grid_item_pixel(scene.frame, step, i));
 }
 
 /// Mask word and flag count of a chunk of 32 items (`PACK_COUNT`).
@@ -89,9 +89,10 @@ pub fn grid_item(step: &StepParams, i: u32) -> u32 {
 }
 
 /// Pixel address of item `i`.
-pub fn grid_item_pixel(step: &StepParams, i: u32) -> u32 {
+pub fn grid_item_pixel(frame: &FrameParams, step: &StepParams, i: u32) -> u32 {
     let item = grid_item(step, i);
-    (step.origin_x + step.step_x * (item & 0xffff)) | (step.origin_y + step.step_y * (item >> 16)) << 16
+    let (x, y) = grid_pixel(frame, step, item & 0xffff, item >> 16);
+    x | y << 16
 }
 
 /// Whether item `i` lies in the grid and its pixel waits for a ray of the half of the list that `i` belongs to.
@@ -100,8 +101,17 @@ pub fn grid_item_is_pending(frame: &FrameParams, step: &StepParams, attributes: 
     if (item & 0xffff) >= step.grid_width || (item >> 16) >= step.grid_height {
         return false;
     }
-    let pixel = grid_item_pixel(step, i);
-    let at = plane_index(frame, pixel & 0xffff, pixel >> 16);
-    let wanted = if i < grid_items(step) { CLASS_PENDING | CLASS_SECONDARY } else { CLASS_PENDING };
+    let pixel = grid_item_pixel(frame, step, i);
+    let (x, y) = (pixel & 0xffff, pixel >> 16);
+    let is_probe = step.flags.contains(StepFlags::PROBES);
+    if x >= frame.width || is_probe && !(frame.interior_begin..frame.interior_end).contains(&y) {
+        return false;
+    }
+    let at = plane_index(frame, x, y);
+    let wanted = match (is_probe, i < grid_items(step)) {
+        (true, _) => CLASS_INTERPOLATED,
+        (false, true) => CLASS_PENDING | CLASS_SECONDARY,
+        (false, false) => CLASS_PENDING,
+    };
     attributes.get(PLANE_CLASS * frame.plane_pitch + at) & (CLASS_MASK | CLASS_SECONDARY) == wanted
 }

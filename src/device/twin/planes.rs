@@ -12,7 +12,7 @@ use super::scene_args::{Work, xyz};
 use crate::error::Result;
 use crate::layout::*;
 pub use crate::layout::{color_index, plane_index};
-use crate::math::{clamp, dot, pack_normal, pack_texcoord, unpack_normal, unpack_texcoord};
+use crate::math::{clamp, dot, fraction, pack_normal, pack_texcoord, unpack_normal, unpack_texcoord, whole_repeats};
 use crate::memory;
 use crate::monitor::Monitor;
 
@@ -93,6 +93,7 @@ pub struct Attributes {
     pub gcol: Vec3,
     pub object: u32,
     pub shadow_bits: u32,
+    pub behind: u32,
 }
 
 impl Attributes {
@@ -105,11 +106,12 @@ impl Attributes {
         gcol: Vec3::ZERO,
         object: NO_OBJECT,
         shadow_bits: 0,
+        behind: NO_OBJECT,
     };
 }
 
-/// Writes all attributes of the pixel at plane index `at`.
-pub fn store_attributes(planes: &Words, pitch: u32, at: u32, a: &Attributes) {
+/// Writes all attributes of the pixel at plane index `at`, and its class with what is above it.
+pub fn store_attributes(planes: &Words, pitch: u32, at: u32, a: &Attributes, pixel_class: u32) {
     let put = |plane: u32, value: f32| planes.set(plane * pitch + at, value.to_bits());
     put(PLANE_POSITION_X, a.position.x);
     put(PLANE_POSITION_Y, a.position.y);
@@ -118,23 +120,29 @@ pub fn store_attributes(planes: &Words, pitch: u32, at: u32, a: &Attributes) {
     put(PLANE_GCOL_G, a.gcol.y);
     put(PLANE_GCOL_B, a.gcol.z);
     planes.set(PLANE_NORMAL * pitch + at, pack_normal(a.normal));
-    planes.set(PLANE_TEXCOORD * pitch + at, pack_texcoord(a.s, a.t));
+    planes.set(PLANE_TEXCOORD * pitch + at, pack_texcoord(fraction(a.s), fraction(a.t)));
     planes.set(PLANE_OBJECT * pitch + at, a.object);
     planes.set(PLANE_SHADOW * pitch + at, a.shadow_bits);
+    planes.set(PLANE_BEHIND * pitch + at, a.behind);
+    let repeats = whole_repeats(a.s) << CLASS_REPEATS_S | whole_repeats(a.t) << CLASS_REPEATS_T;
+    planes.set(PLANE_CLASS * pitch + at, pixel_class | repeats);
 }
 
 /// Reads all attributes of the pixel at plane index `at`.
 pub fn load_attributes(planes: &Words, pitch: u32, at: u32) -> Attributes {
     let get = |plane: u32| f32::from_bits(planes.get(plane * pitch + at));
     let texcoord = planes.get(PLANE_TEXCOORD * pitch + at);
+    let repeats = planes.get(PLANE_CLASS * pitch + at);
     Attributes {
         position: Vec3::new(get(PLANE_POSITION_X), get(PLANE_POSITION_Y), get(PLANE_POSITION_Z)),
         normal: unpack_normal(planes.get(PLANE_NORMAL * pitch + at)),
-        s: unpack_texcoord(texcoord & 0xffff),
-        t: unpack_texcoord(texcoord >> 16),
+        // From -128 on: near 0 a float holds all of a coordinate.
+        s: ((repeats << (24 - CLASS_REPEATS_S)) as i32 >> 24) as f32 + unpack_texcoord(texcoord & 0xffff),
+        t: ((repeats << (24 - CLASS_REPEATS_T)) as i32 >> 24) as f32 + unpack_texcoord(texcoord >> 16),
         gcol: Vec3::new(get(PLANE_GCOL_R), get(PLANE_GCOL_G), get(PLANE_GCOL_B)),
         object: planes.get(PLANE_OBJECT * pitch + at),
         shadow_bits: planes.get(PLANE_SHADOW * pitch + at),
+        behind: planes.get(PLANE_BEHIND * pitch + at),
     }
 }
 

@@ -14,7 +14,7 @@ use super::shade::{ShadePoint, shade_local, srgb_word};
 use super::traverse::{Hit, any_hit, closest_hit};
 use super::triangle_test::plane_normal;
 use crate::layout::*;
-use crate::math::{dot, fraction, max2, min2, normalize, unpack_normal};
+use crate::math::{dot, max2, min2, normalize, unpack_normal};
 
 /// A hit point with everything that shading and secondary rays need.
 #[derive(Debug, Clone, Copy)]
@@ -76,8 +76,8 @@ pub fn surface_point(scene: &SceneArgs, o: Vec3, d: Vec3, hit: &Hit) -> SurfaceP
     let unit = if n2 > 1.0e-12 { n * (1.0 / n2.sqrt()) } else { geometric_normal };
     let normal = if dot(unit, geometric_normal) < 0.0 { -unit } else { unit };
     let [s0, t0, s1, t1, s2, t2] = shading.texcoords;
-    let s = fraction(s0 * w + s1 * u + s2 * v);
-    let t = fraction(t0 * w + t1 * u + t2 * v);
+    let s = s0 * w + s1 * u + s2 * v;
+    let t = t0 * w + t1 * u + t2 * v;
     SurfacePoint { position, geometric_normal, normal, s, t, object, material, offset }
 }
 
@@ -166,13 +166,27 @@ fn continue_chain(scene: &SceneArgs, p: &SurfacePoint, split_reflection: bool, c
     true
 }
 
-/// Light gathered by secondary rays from the first hit `p`: GCOL of the paper.
-pub fn gather_secondary(scene: &SceneArgs, p: &SurfacePoint, d: Vec3, work: &mut Work) -> Vec3 {
+/// What secondary rays find.
+#[derive(Debug, Clone, Copy)]
+pub struct Secondary {
+    /// The light that they gather: GCOL of the paper.
+    pub gcol: Vec3,
+    /// The object seen in a mirror or behind glass, panes not counted; [`NO_OBJECT`] if there is none.
+    pub behind: u32,
+    /// Texture coordinates there.
+    pub s: f32,
+    /// Likewise.
+    pub t: f32,
+}
+
+/// Sends secondary rays from the first hit `p`.
+pub fn gather_secondary(scene: &SceneArgs, p: &SurfacePoint, d: Vec3, work: &mut Work) -> Secondary {
     let surface = scene.materials[p.material as usize].surface;
-    let mut sum = Vec3::ZERO;
+    let mut found = Secondary { gcol: Vec3::ZERO, behind: NO_OBJECT, s: p.s, t: p.t };
     if surface == SURFACE_OPAQUE {
-        return sum;
+        return found;
     }
+    let mut sum = Vec3::ZERO;
     let chains = if surface == SURFACE_MIRROR { 1 } else { 2 };
     for chain in 0..chains {
         let mut c = Chain { origin: p.position, direction: d, weight: Vec3::ONE, inside: false, refracted: false };
@@ -204,12 +218,17 @@ pub fn gather_secondary(scene: &SceneArgs, p: &SurfacePoint, d: Vec3, work: &mut
                 break;
             }
             at = surface_point(scene, c.origin, c.direction, &hit);
+            let is_pane = scene.materials[at.material as usize].surface == SURFACE_THIN_GLASS;
+            if chain + 1 == chains && found.behind == NO_OBJECT && !is_pane {
+                (found.behind, found.s, found.t) = (at.object, at.s, at.t);
+            }
             let shadow_bits = shadow_test(scene, &at, &KnownShadows::default(), work);
             work.shaded += 1;
             sum += c.weight * shade_local(scene, &at.shade_point(shadow_bits), -c.direction);
         }
     }
-    sum
+    found.gcol = sum;
+    found
 }
 
 /// Whether the pixel `(x, y)` of a list of step4 gets its ray; one that needs none becomes `CLASS_CONFIRMED`.
@@ -239,14 +258,19 @@ pub fn trace_pixel(scene: &SceneArgs, x: u32, y: u32, pixel_class: u32, step: &S
         work.shaded += 1;
         let p = surface_point(scene, o, d, &hit);
         let known = known_shadows(scene, step, &out.attributes, (x, y), pixel_class, (p.object, p.material));
+        let shadow_bits = shadow_test(scene, &p, &known, &mut work);
+        let secondary = gather_secondary(scene, &p, d, &mut work);
+        // The coordinates of a mirror without a texture are free for what is seen in it.
+        let textured = scene.materials[p.material as usize].diffuse_texture != NO_TEXTURE;
         a = Attributes {
             position: p.position,
             normal: p.normal,
-            s: p.s,
-            t: p.t,
+            s: if textured { p.s } else { secondary.s },
+            t: if textured { p.t } else { secondary.t },
             object: p.object,
-            shadow_bits: shadow_test(scene, &p, &known, &mut work),
-            gcol: gather_secondary(scene, &p, d, &mut work),
+            shadow_bits,
+            gcol: secondary.gcol,
+            behind: if textured { NO_OBJECT } else { secondary.behind },
         };
         color = shade_local(scene, &p.shade_point(a.shadow_bits), -d) + a.gcol;
     }
@@ -263,9 +287,8 @@ pub fn trace_pixel(scene: &SceneArgs, x: u32, y: u32, pixel_class: u32, step: &S
                 CLASS_CONFIRMED
             };
         }
-        store_attributes(planes, pitch, at, &a);
-        let mask = if pixel_class == CLASS_BASE { 0 } else { planes.get(PLANE_CLASS * pitch + at) & !CLASS_MASK };
-        planes.set(PLANE_CLASS * pitch + at, mask | new_class);
+        let mask = if pixel_class == CLASS_BASE { 0 } else { planes.get(PLANE_CLASS * pitch + at) & CLASS_CHECKED };
+        store_attributes(planes, pitch, at, &a, mask | new_class);
         planes.set(PLANE_CLAIM * pitch + at, NO_CLAIM);
     }
     store_work(&out.counters, frame.plane_pitch, at, &work);

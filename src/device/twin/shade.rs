@@ -5,7 +5,7 @@ use glam::Vec3;
 
 use super::scene_args::{SceneArgs, xyz};
 use crate::layout::{NO_TEXTURE, SRGB_FIRST_BUCKET, SRGB_LEAST, TABLE_SRGB_GUESS, TABLE_SRGB_THRESHOLD};
-use crate::math::{dot, max2, min2, normalize, pow_poly};
+use crate::math::{dot, fraction, max2, min2, normalize, pow_poly};
 
 fn texel_rgb(scene: &SceneArgs, at: u32) -> Vec3 {
     let word = scene.texels[at as usize];
@@ -53,7 +53,7 @@ pub fn shade_local(scene: &SceneArgs, point: &ShadePoint, view: Vec3) -> Vec3 {
     if scene.anchor {
         ks *= own;
     } else if m.diffuse_texture != NO_TEXTURE {
-        kd *= sample_texture(scene, m.diffuse_texture, point.s, point.t);
+        kd *= sample_texture(scene, m.diffuse_texture, fraction(point.s), fraction(point.t));
     }
     let shininess = m.diffuse[3];
     let has_highlight = max2(ks.x, max2(ks.y, ks.z));

@@ -6,24 +6,19 @@ use super::planes::{
     Attributes, color_index, gcol_distance, load_attributes, plane_index, store_attributes, store_work,
 };
 use super::scene_args::{SceneArgs, Work, xyz};
-use super::shade::{ShadePoint, shade_local, srgb_word};
+use super::shade::{ShadePoint, sample_texture, shade_local, srgb_word};
 use crate::layout::*;
-use crate::math::{dot, fraction, min2, normalize};
+use crate::math::{dot, fraction, normalize};
 
 fn wraps(a: f32, b: f32, t_tex: f32) -> bool {
     (a < t_tex && b > 1.0 - t_tex) || (b < t_tex && a > 1.0 - t_tex)
 }
 
-fn around(a: f32, b: f32) -> f32 {
-    let e = (a - b).abs();
-    min2(e, 1.0 - e)
-}
-
 fn unwrap(a: f32, b: f32) -> f32 {
-    if b - a > 0.5 {
-        b - 1.0
-    } else if a - b > 0.5 {
-        b + 1.0
+    if b - a > 128.0 {
+        b - 256.0
+    } else if a - b > 128.0 {
+        b + 256.0
     } else {
         b
     }
@@ -31,9 +26,30 @@ fn unwrap(a: f32, b: f32) -> f32 {
 
 fn textures_part(step: &StepParams, a: &Attributes, b: &Attributes) -> bool {
     if step.flags.contains(StepFlags::UNWRAP) {
-        return !(around(a.s, b.s) <= step.t_tex) || !(around(a.t, b.t) <= step.t_tex);
+        return !((unwrap(a.s, b.s) - a.s).abs() <= step.t_tex) || !((unwrap(a.t, b.t) - a.t).abs() <= step.t_tex);
     }
-    wraps(a.s, b.s, step.t_tex) || wraps(a.t, b.t, step.t_tex)
+    wraps(fraction(a.s), fraction(b.s), step.t_tex) || wraps(fraction(a.t), fraction(b.t), step.t_tex)
+}
+
+/// Whether the texture of what two references see in a mirror or behind glass looks different midway from their mean. Where
+/// they see it too far apart, as in curved mirrors, nobody knows what is midway, and the colours must do.
+fn texture_between(scene: &SceneArgs, step: &StepParams, m: &Material, a: &Attributes, b: &Attributes) -> bool {
+    if !step.flags.contains(StepFlags::BEHIND) || a.behind == NO_OBJECT || a.behind != b.behind {
+        return false;
+    }
+    let texture = scene.materials[scene.object_materials[a.behind as usize] as usize].diffuse_texture;
+    if texture == NO_TEXTURE {
+        return false;
+    }
+    let (bs, bt) = (unwrap(a.s, b.s), unwrap(a.t, b.t));
+    if !((bs - a.s).abs() <= step.t_tex) || !((bt - a.t).abs() <= step.t_tex) {
+        return false;
+    }
+    let sample = |s: f32, t: f32| sample_texture(scene, texture, fraction(s), fraction(t));
+    let weight = xyz(if m.surface == SURFACE_MIRROR { m.reflectance } else { m.transmission });
+    let mean = (sample(a.s, a.t) + sample(bs, bt)) * 0.5;
+    let midway = sample((a.s + bs) * 0.5, (a.t + bt) * 0.5);
+    !(gcol_distance(mean * weight, midway * weight, step.flags) <= step.t_gcol)
 }
 
 /// The fail mask of a pair of references: bit `FAIL_*` set where that test fails and is switched on.
@@ -68,7 +84,7 @@ pub fn similarity_checks(scene: &SceneArgs, step: &StepParams, a: &Attributes, b
     if a.shadow_bits != b.shadow_bits {
         mask |= FailMask::SH;
     }
-    if !(gcol_distance(a.gcol, b.gcol, step.flags) <= step.t_gcol) {
+    if !(gcol_distance(a.gcol, b.gcol, step.flags) <= step.t_gcol) || texture_between(scene, step, material, a, b) {
         mask |= FailMask::GC;
     }
     mask & step.tests
@@ -87,7 +103,11 @@ pub fn interpolate(frame: &FrameParams, step: &StepParams, a: &Attributes, b: &A
     }
     let wb = 1.0 - wa;
     let texture = |a: f32, b: f32| {
-        if step.flags.contains(StepFlags::UNWRAP) { fraction(a * wa + unwrap(a, b) * wb) } else { a * wa + b * wb }
+        if step.flags.contains(StepFlags::UNWRAP) {
+            a * wa + unwrap(a, b) * wb
+        } else {
+            fraction(a) * wa + fraction(b) * wb
+        }
     };
     Attributes {
         position: a.position * wa + b.position * wb,
@@ -97,6 +117,7 @@ pub fn interpolate(frame: &FrameParams, step: &StepParams, a: &Attributes, b: &A
         gcol: a.gcol * wa + b.gcol * wb,
         object: a.object,
         shadow_bits: a.shadow_bits,
+        behind: if a.behind == b.behind { a.behind } else { NO_OBJECT },
     }
 }
 
@@ -108,14 +129,17 @@ fn find_other_pair(
     (a, b): (&Attributes, &Attributes),
     neighbour: &dyn Fn(u32, u32) -> Attributes,
 ) -> Option<(Attributes, Attributes)> {
-    let d = step.reference_dy;
-    if x + d >= scene.frame.width {
+    let (dx, dy) = (step.step_x / 2, step.reference_dy);
+    if x + dx >= scene.frame.width {
         return None;
     }
     let alike = |a: &Attributes, b: &Attributes| similarity_checks(scene, step, a, b).is_empty();
-    let pairs = [(y, y), (y - d, y + d), (y + d, y - d)].into_iter().map(|(left, right)| {
-        let (p, q) = (neighbour(x - d, left), neighbour(x + d, right));
-        let found = alike(&p, &q) && (alike(a, &p) && alike(a, &q) || alike(b, &p) && alike(b, &q));
+    let is_wide = |a: &Attributes, y: u32| [x - dx, x + dx].iter().any(|&x| alike(a, &neighbour(x, y)));
+    let (a_is_wide, b_is_wide) = (is_wide(a, y - dy), is_wide(b, y + dy));
+    let pairs = [(y, y), (y - dy, y + dy), (y + dy, y - dy)].into_iter().map(|(left, right)| {
+        let (p, q) = (neighbour(x - dx, left), neighbour(x + dx, right));
+        let joins = |a: &Attributes| alike(a, &p) && alike(a, &q);
+        let found = alike(&p, &q) && (b_is_wide && joins(a) || a_is_wide && joins(b));
         found.then_some((p, q))
     });
     pairs.flatten().next()
@@ -133,7 +157,7 @@ pub fn check_pixel(scene: &SceneArgs, step: &StepParams, x: u32, y: u32, out: &F
     let planes = &out.attributes;
     let pitch = frame.plane_pitch;
     let at = plane_index(frame, x, y);
-    if x + step.reference_dx >= frame.width || y + step.reference_dy >= frame.height {
+    if x < step.reference_dx || x + step.reference_dx >= frame.width || y + step.reference_dy >= frame.height {
         planes.set(PLANE_CLASS * pitch + at, CLASS_PENDING);
         return;
     }
@@ -155,8 +179,7 @@ pub fn check_pixel(scene: &SceneArgs, step: &StepParams, x: u32, y: u32, out: &F
         return;
     };
     let m = interpolate(frame, step, &a, &b);
-    store_attributes(planes, pitch, at, &m);
-    planes.set(PLANE_CLASS * pitch + at, CLASS_INTERPOLATED);
+    store_attributes(planes, pitch, at, &m, CLASS_INTERPOLATED);
     planes.set(PLANE_CLAIM * pitch + at, NO_CLAIM);
     let mut color = xyz(frame.background);
     let mut work = Work::default();

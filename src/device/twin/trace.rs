@@ -2,16 +2,18 @@
 //! Twin of `kernels/trace.cl`.
 
 use super::ray_tree::{needs_correction_ray, trace_pixel};
-use super::{FrameBuffers, SceneArgs, grid_pixel};
-use crate::layout::{CLASS_BASE, CLASS_CORRECTED, StepParams};
+use super::{FrameBuffers, SceneArgs};
+use crate::layout::{CLASS_BASE, CLASS_CORRECTED, StepParams, grid_pixel};
 
 /// One work-item of `trace` over a grid, whose pixels become base pixels.
 pub fn trace_grid(scene: &SceneArgs, step: &StepParams, gx: u32, gy: u32, buffers: &FrameBuffers) {
     if gx >= step.grid_width || gy >= step.grid_height {
         return;
     }
-    let (x, y) = grid_pixel(step, gx, gy);
-    trace_pixel(scene, x, y, CLASS_BASE, step, buffers);
+    let (x, y) = grid_pixel(scene.frame, step, gx, gy);
+    if x < scene.frame.width {
+        trace_pixel(scene, x, y, CLASS_BASE, step, buffers);
+    }
 }
 
 /// One work-item of `trace` over a list.

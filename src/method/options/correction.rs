@@ -23,6 +23,8 @@ pub enum Correction {
         thin_only: bool,
         /// Also looks at pixels between two parts of a thin line that shows above and below them; beyond the paper.
         bridges: bool,
+        /// Also traces one pixel of every 16x16 that no test or neighbour has asked for; beyond the paper.
+        probes: bool,
     },
 }
 
@@ -63,7 +65,7 @@ named!(Spread of CorrectionSpread { Converged = "converged", Sweeps = "sweeps" }
 impl Correction {
     /// Converged correction with all rules beyond the paper.
     pub const fn converged(compared: Compared) -> Correction {
-        Correction::Converged { compared, thin_only: true, bridges: true }
+        Correction::Converged { compared, thin_only: true, bridges: true, probes: true }
     }
 
     /// What is compared; `None` without correction.
@@ -89,7 +91,9 @@ impl Correction {
         match self {
             Correction::Off => Correction::converged(compared),
             Correction::Sweeps(_) => Correction::Sweeps(compared),
-            Correction::Converged { thin_only, bridges, .. } => Correction::Converged { compared, thin_only, bridges },
+            Correction::Converged { thin_only, bridges, probes, .. } => {
+                Correction::Converged { compared, thin_only, bridges, probes }
+            }
         }
     }
 
@@ -103,7 +107,7 @@ impl Correction {
                 Correction::Sweeps(compared)
             }
             (Correction::Sweeps(compared), Spread::Converged) => {
-                Correction::Converged { compared, thin_only: false, bridges: false }
+                Correction::Converged { compared, thin_only: false, bridges: false, probes: false }
             }
         }
     }
@@ -211,7 +215,8 @@ mod tests {
     fn comparison_and_spread_change_one_without_the_other() {
         let swept = Correction::Sweeps(Compared::PAPER);
         assert_eq!(swept.comparing(Compared::Object), Correction::Sweeps(Compared::Object));
-        let plain = Correction::Converged { compared: Compared::PAPER, thin_only: false, bridges: false };
+        let plain =
+            Correction::Converged { compared: Compared::PAPER, thin_only: false, bridges: false, probes: false };
         assert_eq!(swept.spreading(Spread::Converged), plain);
         assert_eq!(plain.spreading(Spread::Converged), plain);
         assert_eq!(plain.comparing(Compared::PAPER).spread(), Some(Spread::Converged));

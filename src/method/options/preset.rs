@@ -24,6 +24,9 @@ named!(Interpolation of Interpolation { Perspective = "perspective", Plain = "pl
 pub struct Method {
     /// Side of the blocks of which one pixel is always traced: 2 (paper) or 4.
     pub block: u32,
+    /// Base pixels of successive rows of blocks lie in different columns, so that nothing upright lies between all of them;
+    /// beyond the paper.
+    pub shifted_rows: bool,
     /// When a pixel may be interpolated.
     pub checks: Checks,
     /// Where interpolated pixels lie.
@@ -54,12 +57,14 @@ impl Method {
     pub const fn balanced() -> Method {
         Method {
             block: 2,
+            shifted_rows: true,
             checks: Checks {
                 tests: TestSet::ALL,
                 fine: Tolerances::FINE,
                 coarse: Tolerances::COARSE,
                 textures: TextureRule::Joined,
                 gcol_space: GcolSpace::Display,
+                secondary_textures: true,
                 second_pairs: true,
             },
             interpolation: Interpolation::Perspective,
@@ -78,12 +83,14 @@ impl Method {
     pub const fn paper() -> Method {
         Method {
             block: 2,
+            shifted_rows: false,
             checks: Checks {
                 tests: TestSet::ALL,
                 fine: Tolerances::PAPER,
                 coarse: Tolerances::PAPER,
                 textures: TextureRule::Border,
                 gcol_space: GcolSpace::Linear,
+                secondary_textures: false,
                 second_pairs: false,
             },
             interpolation: Interpolation::Plain,

@@ -24,6 +24,7 @@ impl Method {
                 | flag(self.interpolation == Interpolation::Perspective, StepFlags::PERSPECTIVE)
                 | flag(checks.gcol_space == GcolSpace::Linear, StepFlags::GCOL_LINEAR)
                 | flag(checks.textures == TextureRule::Joined, StepFlags::UNWRAP)
+                | flag(checks.secondary_textures, StepFlags::BEHIND)
                 // References four pixels apart agree about too little.
                 | flag(self.reuse_shadows && is_finest, StepFlags::REUSE_SHADOWS),
             ..step
