@@ -37,11 +37,11 @@ fn a_lost_device_is_opened_again_and_the_frame_is_right() {
     }
     let faults = Faults::default();
     let mut renderer = renderer(&faults);
-    let right = renderer.render(&options(), Keep::default()).unwrap();
+    let right = renderer.render_exactly(&options(), Keep::default()).unwrap();
     for (after, code) in [(0, OUT_OF_RESOURCES), (1, INVALID_COMMAND_QUEUE), (9, OUT_OF_RESOURCES)] {
         let notices = renderer.notices().len();
         faults.after(after, code);
-        let frame = renderer.render(&options(), Keep::planes(&[PLANE_OBJECT])).unwrap();
+        let frame = renderer.render_exactly(&options(), Keep::planes(&[PLANE_OBJECT])).unwrap();
         assert_eq!(faults.left(), 0, "the fault struck");
         assert!(frame.pixels == right.pixels, "after {after} enqueues: another picture");
         assert_eq!(frame.stats.pixels, right.stats.pixels);
@@ -52,7 +52,7 @@ fn a_lost_device_is_opened_again_and_the_frame_is_right() {
     // In bands, too.
     faults.after(20, OUT_OF_RESOURCES);
     let bands = RenderOptions { band_rows: Some(20), ..options() };
-    assert!(renderer.render(&bands, Keep::default()).unwrap().pixels == right.pixels);
+    assert!(renderer.render_exactly(&bands, Keep::default()).unwrap().pixels == right.pixels);
     assert_eq!(faults.left(), 0);
 }
 
@@ -69,10 +69,10 @@ fn slices_are_halved_when_a_device_was_lost() {
         number.unwrap_or_else(|_| panic!("{notice}"))
     };
     faults.after(3, OUT_OF_RESOURCES);
-    renderer.render(&options(), Keep::default()).unwrap();
+    renderer.render_exactly(&options(), Keep::default()).unwrap();
     let first = told(&renderer);
     faults.after(3, OUT_OF_RESOURCES);
-    renderer.render(&options(), Keep::default()).unwrap();
+    renderer.render_exactly(&options(), Keep::default()).unwrap();
     assert!((told(&renderer) - first / 2.0).abs() < 0.11, "{first} ms, then {} ms", told(&renderer));
 }
 
@@ -84,11 +84,11 @@ fn a_second_loss_is_an_error_and_the_renderer_stays_usable() {
     let faults = Faults::default();
     let mut renderer = renderer(&faults);
     let keep = Keep::planes(&[PLANE_OBJECT]);
-    let right = renderer.render(&options(), keep).unwrap();
+    let right = renderer.render_exactly(&options(), keep).unwrap();
     for second in [0, 7] {
         faults.after(5, OUT_OF_RESOURCES);
         faults.after(second, INVALID_COMMAND_QUEUE);
-        let error = renderer.render(&options(), Keep::default()).unwrap_err();
+        let error = renderer.render_exactly(&options(), Keep::default()).unwrap_err();
         assert!(matches!(error, Error::DeviceLost { .. }), "{error}");
         let message = error.to_string();
         for part in ["lost twice in one frame", "CL_INVALID_COMMAND_QUEUE (-36)", "smaller picture", "CPU twin"] {
@@ -97,7 +97,7 @@ fn a_second_loss_is_an_error_and_the_renderer_stays_usable() {
         assert_eq!(faults.left(), 0);
         // What the frame before kept went with the device, and the next frame is right.
         assert!(matches!(renderer.plane(PLANE_OBJECT), Err(Error::MissingPlane { .. })));
-        assert!(renderer.render(&options(), keep).unwrap().pixels == right.pixels);
+        assert!(renderer.render_exactly(&options(), keep).unwrap().pixels == right.pixels);
     }
 }
 
@@ -110,7 +110,7 @@ fn other_failures_are_not_retried() {
     let faults = Faults::default();
     let mut renderer = renderer(&faults);
     faults.after(2, INVALID_KERNEL_ARGS);
-    let error = renderer.render(&options(), Keep::default()).unwrap_err();
+    let error = renderer.render_exactly(&options(), Keep::default()).unwrap_err();
     assert!(matches!(error, Error::OpenCl { code: INVALID_KERNEL_ARGS, .. }), "{error}");
     assert!(renderer.notices().iter().all(|notice| !notice.contains("lost")));
 }

@@ -222,7 +222,8 @@ fn interpolation_errors(block: u32, interpolation: Interpolation) -> [f64; 2] {
         let d = eye.direction((at as u32 % W, at as u32 / W));
         let p = eye.at - d * (eye.at.y / d.y);
         let size = p.distance(eye.at);
-        errors[0] = errors[0].max((x[at] - p.x).hypot(z[at] - p.z) / size);
+        // Hit points are made of the triangle's corners, so they are as exact along it as it is long.
+        errors[0] = errors[0].max((x[at] - p.x).hypot(z[at] - p.z) / size.max(80.0));
         errors[1] = errors[1].max((s[at] - (p.x + 40.0) / 80.0).hypot(t[at] - (40.0 - p.z) / 80.0) / size);
     }
     errors

@@ -124,7 +124,7 @@ mod tests {
                 }
                 None => {
                     let part = setting.path().split('.').next().unwrap();
-                    assert!(["kdtree", "scene", "traversal"].contains(&part), "{setting} has no option");
+                    assert!(["kdtree", "memory_path", "scene", "traversal"].contains(&part), "{setting} has no option");
                 }
             }
         }
