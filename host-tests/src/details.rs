@@ -27,7 +27,7 @@ pub fn scenes() -> Vec<(String, Scene)> {
         scenes.push((format!("fence at {degrees} degrees"), bars(degrees, posts)));
     }
     scenes.push(("hair".into(), hair()));
-    let text = image::open(root().join("host-tests/cases/50-text/t.png")).unwrap().into_rgba8();
+    let text = image::open(root().join("host-tests/textures/text.png")).unwrap().into_rgba8();
     let text: Vec<u32> = text.pixels().map(|p| u32::from_le_bytes(p.0)).collect();
     scenes.push(("text behind a pane".into(), board(512, text.clone(), 1.0, true)));
     scenes.push(("text in a mirror".into(), text_in_a_mirror(text)));
