@@ -39,7 +39,7 @@ pub fn base_pixels(frame: &FrameParams, rows: std::ops::Range<u32>, shifted: boo
     rows.step_by(frame.block as usize).map(in_row).sum()
 }
 
-/// The pixel of post-correction's probe in a tile: along a row or column of tiles in ever other rows, but never in one that
+/// The pixel of post-correction's probe in a tile: along a row or column of tiles in changing rows, but never in one that
 /// has base pixels.
 fn probe(block: u32, gx: u32, gy: u32) -> (u32, u32) {
     let k = (5 * gx + 3 * gy) % (PROBE_TILE - PROBE_TILE / block);
