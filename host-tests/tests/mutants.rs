@@ -124,6 +124,8 @@ const SCAN_LEVEL: &str = "scan_level(&step, sums, scratch);";
 const SCAN_ONE_SHORT: &str = "StepParams s = step; s.item_count -= 1u; scan_level(&s, sums, scratch);";
 const ENTRY: &str = "list[step.list_offset + item]";
 const EVEN_ENTRY: &str = "list[step.list_offset + (item & ~1u)]";
+const LISTED_X: &str = "list[step.list_offset + item];\n    x = pixel & 0xffffu";
+const LISTED_EVEN_X: &str = "list[step.list_offset + item];\n    x = pixel & 0xfffeu";
 
 /// Each entry point on its own.
 #[rustfmt::skip]
@@ -143,7 +145,7 @@ const ENTRY_POINTS: &[Mutant] = &[
     ("trace.cl", "step.pixel_class == CLASS_CORRECTED &&", "step.pixel_class != CLASS_CORRECTED &&", Shot::Zoo, STEP3C),
     ("trace.cl", ENTRY, EVEN_ENTRY, Shot::Zoo, STEP3C),
     ("trace.cl", "get_local_size(1) + gy)", "get_local_size(1))", Shot::Zoo, STEP2C),
-    ("trace.cl", "pixel & 0xffffu", "pixel & 0xfffeu", Shot::Zoo, STEP3C),
+    ("trace.cl", LISTED_X, LISTED_EVEN_X, Shot::Zoo, STEP3C),
     ("common/correction.clh", "atomic_min(", "atomic_max(", Shot::Rods, MARK),
     ("correct.cl", "chunk * 32u < step.item_count", "chunk * 64u < step.item_count", Shot::Rods, COUNT),
     ("pack.cl", "chunk * 32u < step.item_count", "chunk * 512u < step.item_count", Shot::Rods, PROBE_COUNT),
@@ -179,7 +181,8 @@ const CORRECTION: &[Mutant] = &[
     ("common/correction.clh", "case 2u: return y > frame->window_begin ?", "case 2u: return y > frame->window_begin + 19u ?", Shot::Rods, MARK),
     ("common/correction.clh", "case 3u: return y + 1u < frame->window_end ?", "case 3u: return y + 19u < frame->window_end ?", Shot::Rods, MARK),
     ("common/ray_tree.clh", "!(step->flags & STEP_SETTLE) &&", "", Shot::RodsInBands, RETRACE),
-    ("common/ray_tree.clh", "y < frame->interior_end) return true", "y <= frame->interior_end) return true", Shot::RodsInBands, TAIL),
+    ("common/ray_tree.clh", "y < frame->interior_end) return true", "y <= frame->interior_end) return true", Shot::RodsInBands, RETRACE),
+    ("common/ray_tree.clh", "y < frame->interior_end) return true", "y <= frame->interior_end) return true", Shot::DashesInBands, TAIL),
     ("common/ray_tree.clh", "y >= frame->interior_begin", "y + 1u >= frame->interior_begin", Shot::RodsInBands, RETRACE),
     ("common/attributes.clh", "(y - frame->window_begin) >> shift", "(frame->window_end - 1u - y) >> shift", Shot::RodsInBands, STEP1),
     ("common/attributes.clh", "(y - frame->window_begin) * frame->width", "(frame->window_end - 1u - y) * frame->width", Shot::RodsInBands, STEP1),
