@@ -74,7 +74,8 @@ impl Prepared {
     pub fn named(name: &str) -> Self {
         let scene = match name {
             "zoo" => zoo(),
-            "window" => window(),
+            "window" => window(0.0),
+            "far-window" => window(128.0),
             "dashes" => crate::fixtures::dashes(&[(12.3, 6.0), (52.3, -9.0)]),
             _ => builtin::to_scene(name).unwrap(),
         };
@@ -199,9 +200,9 @@ impl Drawn {
     }
 }
 
-/// A wall whose texture coordinates go from -2 to 2. A pane hides its lower right quarter, and a mirror its upper left one;
+/// A wall whose texture coordinates go from `middle - 2` to `middle + 2`. A pane hides its lower right quarter, and a mirror its upper left one;
 /// there the same texture is seen on a wall behind the camera.
-pub fn window() -> Scene {
+pub fn window(middle: f32) -> Scene {
     use crate::fixtures::{ONCE, SceneBuilder, glass, matte, mirror, v};
     let mut builder = SceneBuilder::new("window").camera(v(0.0, 0.0, 2.4), glam::Vec3::ZERO, 45.0);
     builder = builder.light(v(0.5, 1.0, 2.0), 4.0).environment(0.3, glam::Vec3::ZERO);
@@ -210,9 +211,10 @@ pub fn window() -> Scene {
     let textured = rarefy::internal::scene::Material { diffuse_texture: Some(texture), ..matte(glam::Vec3::ONE) };
     let corners = ONCE.map(|c| (2.0 * c - glam::Vec2::ONE) * 2.0);
     builder.object(textured.clone());
-    builder.quad_with(corners.map(|c| c.extend(0.0)), corners);
+    let texcoords = corners.map(|c| c + middle);
+    builder.quad_with(corners.map(|c| c.extend(0.0)), texcoords);
     builder.object(textured);
-    builder.quad_with(corners.map(|c| v(-c.x, c.y, 3.0)), corners);
+    builder.quad_with(corners.map(|c| v(-c.x, c.y, 3.0)), texcoords);
     builder.object(glass(Surface::ThinGlass, 1.5));
     builder.wall(glam::Vec2::new(0.1, -2.0), glam::Vec2::new(2.0, -0.1), 0.2);
     builder.object(mirror(0.9));

@@ -47,6 +47,12 @@ enum Shot {
     ZooShort,
     /// [`Shot::ZooShort`] without any stack.
     ZooStackless,
+    /// A texture that repeats, also seen in a mirror and behind a pane.
+    Window,
+    /// [`Shot::Window`] in blocks of 4.
+    WindowFast,
+    /// [`Shot::Window`] where the whole repetitions that are stored begin anew.
+    FarWindow,
 }
 
 impl Shot {
@@ -56,6 +62,8 @@ impl Shot {
             Shot::Room | Shot::Paper => "mirror-room",
             Shot::Rods | Shot::RodsSwept | Shot::RodsInBands | Shot::Large => "rods",
             Shot::Dashes | Shot::DashesInBands => "dashes",
+            Shot::Window | Shot::WindowFast => "window",
+            Shot::FarWindow => "far-window",
         }
     }
 
@@ -70,6 +78,8 @@ impl Shot {
             Shot::Dashes | Shot::DashesInBands => (options.width, options.height) = (64, 64),
             Shot::Room | Shot::ZooShort | Shot::ZooStackless => {}
             Shot::Paper => options.method = Method::paper(),
+            Shot::Window | Shot::FarWindow => (options.width, options.height) = (96, 72),
+            Shot::WindowFast => options = RenderOptions { width: 96, height: 72, method: Method::fast(), ..options },
         }
         if matches!(self, Shot::RodsInBands | Shot::DashesInBands) {
             options.band_rows = Some(8);
@@ -381,6 +391,29 @@ const PACKING: &[Mutant] = &[
     ("common/similarity.clh", "surface != SURFACE_OPAQUE", "surface == SURFACE_OPAQUE", Shot::Zoo, STEP3A),
 ];
 
+/// Whole repetitions of textures, shifted rows, textures in mirrors and behind glass.
+#[rustfmt::skip]
+const DETAIL: &[Mutant] = &[
+    ("common/attributes.clh", "whole_repeats(a->s) << CLASS_REPEATS_S", "whole_repeats(a->t) << CLASS_REPEATS_S", Shot::Window, STEP1),
+    ("common/attributes.clh", "(24u - CLASS_REPEATS_T)", "(24u - CLASS_REPEATS_S)", Shot::Window, STEP2A),
+    ("common/attributes.clh", "block == 2u ? y >> 1 & 1u", "block == 2u ? 0u", Shot::Window, STEP1),
+    ("common/attributes.clh", "(y >> 1 & 2u) | (y >> 3 & 1u)", "(y >> 1 & 2u)", Shot::WindowFast, STEP1),
+    ("common/math.clh", "(uint)(whole - 256.0f", "(uint)(fabs(whole) - 256.0f", Shot::Window, STEP1),
+    ("common/similarity.clh", "!(fabs(unwrap(a->s, b->s) - a->s) <= step->t_tex)", "!(fabs(unwrap(a->s, b->s) - a->s) <= 0.1f * step->t_tex)", Shot::Window, STEP2A),
+    ("common/similarity.clh", "!(fabs(unwrap(a->t, b->t) - a->t) <= step->t_tex)", "!(fabs(unwrap(a->t, b->t) - a->t) <= 0.1f * step->t_tex)", Shot::Window, STEP3A),
+    ("common/similarity.clh", "b - a > 128.0f ? b - 256.0f", "b - a > 128.0f ? b", Shot::FarWindow, STEP2A),
+    ("common/similarity.clh", "a - b > 128.0f ? b + 256.0f", "a - b > 128.0f ? b", Shot::FarWindow, STEP3A),
+    ("common/similarity.clh", "a->behind != b->behind) return false", "a->behind == b->behind) return false", Shot::WindowFast, STEP2A),
+    ("common/similarity.clh", "fraction1((a->s + bs) * 0.5f)", "fraction1(a->s)", Shot::WindowFast, STEP2A),
+    ("common/similarity.clh", "fraction1((a->t + bt) * 0.5f)", "fraction1(a->t)", Shot::Window, STEP3A),
+    ("common/similarity.clh", "m->surface == SURFACE_MIRROR ? m->reflectance", "m->surface != SURFACE_MIRROR ? m->reflectance", Shot::WindowFast, STEP2A),
+    ("common/similarity.clh", "if (a->behind != b->behind) m.behind", "if (a->behind == b->behind) m.behind", Shot::Window, STEP3A),
+    ("common/similarity.clh", "m.s = a->s * wa + unwrap(a->s, b->s) * wb", "m.s = a->s", Shot::Window, STEP2A),
+    ("common/ray_tree.clh", "seen->s = at.s", "seen->s = at.t", Shot::Window, STEP1),
+    ("common/ray_tree.clh", "chain + 1u == chains &&", "", Shot::Window, STEP1),
+    ("common/ray_tree.clh", "seen->behind == NO_OBJECT &&", "", Shot::Zoo, STEP1),
+];
+
 /// A cache of its own, kept from run to run: mutants shall not crowd the user's.
 fn open(shot: Shot) -> OpenOptions {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("mutants");
@@ -393,8 +426,19 @@ fn parity(prepared: &Prepared, shot: Shot, launch: Launch, mutation: Option<Muta
 }
 
 /// All tables.
-const TABLES: [&[Mutant]; 10] =
-    [ENTRY_POINTS, CORRECTION, BRIDGES, KNOWN_SHADOWS, TRAVERSAL, SHORT_WALK, RAY_TREE, SHADING, SIMILARITY, PACKING];
+const TABLES: [&[Mutant]; 11] = [
+    ENTRY_POINTS,
+    CORRECTION,
+    BRIDGES,
+    KNOWN_SHADOWS,
+    TRAVERSAL,
+    SHORT_WALK,
+    RAY_TREE,
+    SHADING,
+    SIMILARITY,
+    DETAIL,
+    PACKING,
+];
 
 /// Of each file, and of each launch that these leave out, the first mutant: a mutant costs a program.
 fn sample() -> Vec<&'static Mutant> {
@@ -482,9 +526,9 @@ fn mutants_of_entry_points_and_correction_are_caught() {
 }
 
 #[test]
-#[ignore = "long: every mutant of bridges, known shadows, checks and packing"]
-fn mutants_of_bridges_shadows_checks_and_packing_are_caught() {
-    every_broken_line_is_caught([BRIDGES, KNOWN_SHADOWS, SIMILARITY, PACKING].into_iter().flatten());
+#[ignore = "long: every mutant of bridges, known shadows, checks, detail and packing"]
+fn mutants_of_bridges_shadows_checks_detail_and_packing_are_caught() {
+    every_broken_line_is_caught([BRIDGES, KNOWN_SHADOWS, SIMILARITY, DETAIL, PACKING].into_iter().flatten());
 }
 
 #[test]

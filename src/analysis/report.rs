@@ -9,6 +9,7 @@ use crate::analysis::wave_model::{StageCost, WAVES, WaveModel};
 use crate::device::executor::ExecutorInfo;
 use crate::device::stage::Stage;
 use crate::method::counts::{PixelCounts, RayCounts, WorkCounts};
+use crate::method::fallback::does_not_pay;
 use crate::method::options::{Mode, RenderOptions, Test};
 use crate::render::frame::{Frame, FrameStats};
 use crate::render::renderer::{BuildTimes, Renderer};
@@ -37,6 +38,7 @@ pub struct CompareReport {
     adaptive: FrameReport,
     ray_traced_ratio: f64,
     ray_traced_ratio_with_correction: f64,
+    falls_back: bool,
     speedup: f64,
     work_speedup: f64,
     efficiency: f64,
@@ -163,6 +165,7 @@ impl CompareReport {
             adaptive: FrameReport::new(&comparison.adaptive, Mode::Adaptive),
             ray_traced_ratio: comparison.adaptive.ray_traced_ratio(),
             ray_traced_ratio_with_correction: comparison.adaptive.ray_traced_ratio_with_correction(),
+            falls_back: does_not_pay(&comparison.adaptive.pixels),
             speedup: comparison.speedup,
             work_speedup: comparison.work_speedup(),
             efficiency: comparison.efficiency(),

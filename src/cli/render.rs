@@ -42,7 +42,12 @@ pub fn run(args: &RenderArgs, interrupt: &Interrupt) -> Result<()> {
     let (mut renderer, load_ms) =
         make_renderer(&args.draw.scene, args.draw.shading, &args.draw.device_options()?, &outputs, interrupt)?;
     let notices = renderer.notices().len();
-    let frame = watched(&mut renderer, interrupt, |renderer| renderer.render(&options, keep))?;
+    // Whoever looks at what the method did wants to see it where it lost detail too.
+    let wants_method = layers.iter().any(|(layer, _)| layer.is_adaptive_only());
+    let frame = watched(&mut renderer, interrupt, |renderer| match wants_method {
+        true => renderer.render_exactly(&options, keep),
+        false => renderer.render(&options, keep),
+    })?;
     warn_all(&renderer.notices()[notices..]);
     // File by file: Ctrl-C lets the one that is being written be finished.
     interrupt.watch(|cancel| {
@@ -70,7 +75,7 @@ pub fn run(args: &RenderArgs, interrupt: &Interrupt) -> Result<()> {
         ),
     );
     if frame.stats.fell_back {
-        say(json, "traced in full: the method did not pay in the frames before");
+        say(json, "traced in full: the adaptive frame lost detail, or frames before cost as much as full ones");
     }
     match json {
         Some(path) => write_json(path, &RenderReport::new(&mut renderer, &options, &frame, load_ms)),

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! What of a frame is counted and kept.
 
+use std::ops::AddAssign;
+
 use crate::layout::{COUNTER_COUNT, FrameParams, PLANE_COUNT};
 
 /// What a frame keeps beside its picture.
@@ -92,6 +94,15 @@ pub struct RayCounts {
     pub refraction: u64,
 }
 
+impl AddAssign for RayCounts {
+    fn add_assign(&mut self, more: RayCounts) {
+        self.primary += more.primary;
+        self.shadow += more.shadow;
+        self.reflection += more.reflection;
+        self.refraction += more.refraction;
+    }
+}
+
 /// Work that does not depend on the device.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize)]
 pub struct WorkCounts {
@@ -101,6 +112,14 @@ pub struct WorkCounts {
     pub triangle_tests: u64,
     /// Surface points shaded, interpolated pixels and points at the ends of secondary rays included.
     pub shaded_pixels: u64,
+}
+
+impl AddAssign for WorkCounts {
+    fn add_assign(&mut self, more: WorkCounts) {
+        self.traversal_steps += more.traversal_steps;
+        self.triangle_tests += more.triangle_tests;
+        self.shaded_pixels += more.shaded_pixels;
+    }
 }
 
 impl WorkCounts {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Never slower than full: where the method does not pay, following frames are traced in full.
+//! Never slower than full, and never much worse: where the method does not pay frames are traced in full.
 
 use crate::method::counts::PixelCounts;
 use crate::method::options::RenderOptions;
@@ -10,16 +10,17 @@ const PACKED_RAY_COST: f64 = 1.5;
 /// What checking, interpolating and packing cost per adaptive pixel, in average rays.
 const CHECK_COST: f64 = 0.06;
 /// Where correction traces more than this share of the pixels that had been interpolated, detail is finer than the grid of
-/// samples, and much of it is lost.
-const MOST_CORRECTED: f64 = 0.125;
+/// samples, and much of it is lost. (docs/method.md, section 7: scenes that lose it have 0.12 and more, the six real ones
+/// at 512x512 0.07 at most.)
+const MOST_CORRECTED: f64 = 0.1;
 /// After this many full frames the method gets another try: the view may have become easier.
 const FRAMES_BEFORE_RETRY: u32 = 30;
 
 /// Decides from each adaptive frame's own counters whether the following ones should be full.
 ///
 /// An adaptive frame is taken to cost `base + 1.5 (traced + corrected) + 0.06 (all - base)` average rays; if that is
-/// not less than one ray a pixel, or if correction traced more than an eighth of what had been interpolated, the next 30
-/// frames with the same options are traced in full.
+/// not less than one ray a pixel, or if the frame [loses detail](loses_detail), the next 30 frames with the same options are
+/// traced in full.
 #[derive(Debug, Clone, Default)]
 pub struct Fallback {
     options: Option<RenderOptions>,
@@ -43,10 +44,16 @@ impl Fallback {
     }
 }
 
-/// Whether a frame like this one should be traced in full: it costs as much, or interpolation is too often wrong.
+/// Whether frames like this one should be traced in full: they cost as much, or lose detail.
 pub fn does_not_pay(pixels: &PixelCounts) -> bool {
+    modelled_cost(pixels) >= 1.0 || loses_detail(pixels)
+}
+
+/// Whether interpolation was so often wrong, by what correction found, that much more is wrong that it did not find: such
+/// a frame is drawn again in full. Correction traced more than a tenth of what had been interpolated.
+pub fn loses_detail(pixels: &PixelCounts) -> bool {
     let rebuilt = pixels.interpolated + pixels.corrected;
-    modelled_cost(pixels) >= 1.0 || pixels.corrected as f64 > MOST_CORRECTED * rebuilt as f64
+    pixels.corrected as f64 > MOST_CORRECTED * rebuilt as f64
 }
 
 /// Modelled cost of an adaptive frame over that of a full one.
@@ -67,10 +74,10 @@ mod tests {
         let mut fallback = Fallback::default();
         fallback.learn(&options, &PixelCounts { base: 25, traced: 6, interpolated: 68, corrected: 1 });
         assert!(!fallback.choose_full(&options));
-        fallback.learn(&options, &PixelCounts { base: 250, traced: 60, interpolated: 610, corrected: 80 });
+        fallback.learn(&options, &PixelCounts { base: 250, traced: 60, interpolated: 630, corrected: 60 });
         assert!(!fallback.choose_full(&options));
-        fallback.learn(&options, &PixelCounts { base: 250, traced: 60, interpolated: 590, corrected: 100 });
-        assert!(fallback.choose_full(&options), "a seventh of what was interpolated was traced after all");
+        fallback.learn(&options, &PixelCounts { base: 250, traced: 60, interpolated: 610, corrected: 80 });
+        assert!(fallback.choose_full(&options), "a ninth of what was interpolated was traced after all");
         fallback.learn(&options, &PixelCounts { base: 25, traced: 60, interpolated: 10, corrected: 5 });
         for _ in 0..FRAMES_BEFORE_RETRY {
             assert!(fallback.choose_full(&options));

@@ -48,7 +48,8 @@ pub struct FrameStats {
     pub work_by_class: Option<[u64; 3]>,
     /// How often each test failed, in the order of [`crate::method::options::Test::ALL`], if counters were kept.
     pub failed_tests: Option<[u64; 7]>,
-    /// An adaptive frame was asked for and a full one drawn, because the method did not pay in frames before.
+    /// An adaptive frame was asked for and a full one drawn, because the method did not pay in frames before, or because
+    /// the adaptive one had lost detail: times, rays and work are then those of both.
     pub fell_back: bool,
 }
 
@@ -56,6 +57,18 @@ impl FrameStats {
     /// The frame's time outside of the stages (launches, transfers), milliseconds.
     pub fn other_ms(&self) -> f64 {
         (self.frame_ms - self.stages_ms.iter().sum::<f64>()).max(0.0)
+    }
+
+    /// Adds what a frame cost that was drawn for this one and is not shown.
+    pub(crate) fn add_cost(&mut self, spent: &FrameStats) {
+        self.frame_ms += spent.frame_ms;
+        self.stages_ms.iter_mut().zip(spent.stages_ms).for_each(|(ms, more)| *ms += more);
+        if let (Some(rays), Some(more)) = (&mut self.rays, spent.rays) {
+            *rays += more;
+        }
+        if let (Some(work), Some(more)) = (&mut self.work, spent.work) {
+            *work += more;
+        }
     }
 
     /// (base + traced) / all, as in the paper.

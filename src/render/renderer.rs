@@ -21,7 +21,7 @@ use crate::layout::{FrameParams, PLANE_COUNT};
 use crate::method::bands::{FrameBudget, Plan};
 use crate::method::camera::frame_inputs;
 use crate::method::counts::Keep;
-use crate::method::fallback::Fallback;
+use crate::method::fallback::{Fallback, loses_detail};
 use crate::method::frame::draw_frame;
 use crate::method::options::{Mode, RenderOptions};
 use crate::monitor::Monitor;
@@ -109,8 +109,8 @@ impl Renderer {
         })
     }
 
-    /// Draws a frame. An adaptive frame that its own counters show to be dearer than full tracing makes the following
-    /// ones full (see [`Fallback`]); the statistics say so.
+    /// Draws a frame. An adaptive frame whose own counters show that it lost detail is drawn once more, in full; it, and one
+    /// that cost as much as full tracing, makes the following ones full (see [`Fallback`]). The statistics say so.
     ///
     /// The renderer's monitor is told how far it is, and can cancel it. After any error the renderer is usable, and what
     /// the frame drawn last kept ([`Renderer::plane`]) is what it was, unless the device was lost: a frame takes the
@@ -123,16 +123,23 @@ impl Renderer {
     /// An option out of range, a frame beyond the device's limits or the memory budget, or a failing call.
     /// [`Error::Cancelled`]; [`Error::DeviceLost`] if the device was lost twice: the next frame opens it once more.
     pub fn render(&mut self, options: &RenderOptions, keep: Keep) -> Result<Frame> {
-        let fell_back = options.mode == Mode::Adaptive && self.fallback.choose_full(options);
-        let mut frame = if fell_back {
-            self.render_exactly(&RenderOptions { mode: Mode::Full, ..options.clone() }, keep)?
-        } else {
-            self.render_exactly(options, keep)?
-        };
-        if options.mode == Mode::Adaptive && !fell_back {
-            self.fallback.learn(options, &frame.stats.pixels);
+        if options.mode == Mode::Full {
+            return self.render_exactly(options, keep);
         }
-        frame.stats.fell_back = fell_back;
+        let mut spent = None;
+        if !self.fallback.choose_full(options) {
+            let frame = self.render_exactly(options, keep)?;
+            self.fallback.learn(options, &frame.stats.pixels);
+            if !loses_detail(&frame.stats.pixels) {
+                return Ok(frame);
+            }
+            spent = Some(frame.stats);
+        }
+        let mut frame = self.render_exactly(&RenderOptions { mode: Mode::Full, ..options.clone() }, keep)?;
+        frame.stats.fell_back = true;
+        if let Some(spent) = spent {
+            frame.stats.add_cost(&spent);
+        }
         Ok(frame)
     }
 
