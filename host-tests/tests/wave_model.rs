@@ -34,6 +34,13 @@ fn both_back_ends_and_profiles_agree() {
     let full = RenderOptions { mode: Mode::Full, ..options() };
     let work = twin.render_exactly(&full, Keep::COUNTERS).unwrap().stats.work.unwrap();
     assert!(expected.full[0].lanes > (work.traversal_steps + work.triangle_tests) as f64);
+    // Base pixels cost about the same in whichever columns they lie.
+    let base = |shifted: bool| {
+        let options = with(&options(), |method| method.shifted_rows = shifted);
+        let mut renderer = renderer(DeviceChoice::Cpu, None);
+        wave_model(&mut renderer, &options).unwrap().adaptive[Stage::Step1 as usize].lanes
+    };
+    assert!((0.95..1.05).contains(&(base(true) / base(false))), "{} and {}", base(true), base(false));
     for cost in expected.full.iter().chain(&expected.adaptive) {
         assert!((0..3).all(|wave| cost.divergence(wave) >= 0.999), "{cost:?}");
     }

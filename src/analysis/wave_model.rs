@@ -233,9 +233,9 @@ impl FrameItems {
             let (left, top) = (group % groups.0 * GROUP_SIDE, group / groups.0 * GROUP_SIDE);
             for lane in 0..GROUP_SIDE * GROUP_SIDE {
                 let (gx, gy) = (left + lane % GROUP_SIDE, top + lane / GROUP_SIDE);
-                let inside = gx < step.grid_width && gy < step.grid_height;
-                let pixel = || (step.origin_x + step.step_x * gx, step.origin_y + step.step_y * gy);
-                lanes.push(if inside { cost(pixel().0, pixel().1) } else { 0.0 });
+                let (x, y) = grid_pixel(&self.frame, step, gx, gy);
+                let inside = gx < step.grid_width && gy < step.grid_height && x < self.frame.width;
+                lanes.push(if inside { cost(x, y) } else { 0.0 });
             }
         }
         lanes
