@@ -251,9 +251,24 @@ fn the_command_bakes_and_draws_what_it_baked() {
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 4);
     rarefy(&["render", "rods.baked", "--shading", "anchor"]).expect_error(&["--shading", "rods.baked", "`full`"]);
     rarefy(&["bake", "rods.baked", "-o", "rods.baked"]).expect_error(&["-o", "read by the same command"]);
-    rarefy(&["doctor", "rods.baked"]).expect_error(&["rods.baked: this is a baked scene"]);
+    // The doctor counts the same as in the scene itself.
+    let counts = |scene: &str| {
+        let said = rarefy(&["doctor", scene]).expect(0).stdout;
+        said.lines().next().unwrap().rsplit_once(": ").unwrap().1.to_owned()
+    };
+    rarefy(&["bake", "spheres", "-o", "spheres.baked"]).expect(0);
+    for scene in ["rods", "spheres"] {
+        assert_eq!(counts(&format!("{scene}.baked")), counts(scene));
+    }
+    assert!(!counts("spheres").contains(" 0 textures"));
+    let said = rarefy(&["doctor", "rods.baked"]).expect(0).stdout;
+    assert!(said.starts_with("rods: baked, version 2 of the format, full shading: "), "{said}");
+    let json = rarefy(&["doctor", "rods.baked", "--json", "-"]).expect(0).stdout;
+    assert!(json.contains("\"baked_version\": 2"), "{json}");
     let mut broken = file("rods.baked");
     broken.truncate(5000);
     std::fs::write(folder.path().join("broken.baked"), broken).unwrap();
-    rarefy(&["render", "broken.baked"]).expect_error(&["broken.baked: this baked scene is damaged", "5000 bytes"]);
+    for command in ["render", "doctor"] {
+        rarefy(&[command, "broken.baked"]).expect_error(&["broken.baked: this baked scene is damaged", "5000 bytes"]);
+    }
 }

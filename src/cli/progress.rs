@@ -130,6 +130,11 @@ pub fn load_prepared(name: &Path, shading: Shading, outputs: &Outputs, interrupt
     with_bar(interrupt, |monitor| prepare(name, shading, outputs, monitor))
 }
 
+/// Reads a baked scene, whatever its shading.
+pub fn load_baked(name: &Path, interrupt: &Interrupt) -> Result<PreparedScene> {
+    with_bar(interrupt, |monitor| PreparedScene::from_baked_file(name, monitor))
+}
+
 fn prepare(name: &Path, shading: Shading, outputs: &Outputs, monitor: &Monitor) -> Result<Loaded> {
     let started = Instant::now();
     if PreparedScene::is_baked_file(name) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The scene as the kernels read it: a kd-tree and flat arrays, ready for upload.
 
+use std::collections::BTreeSet;
 use std::time::Instant;
 
 use glam::{DVec3, Vec3};
@@ -127,6 +128,18 @@ impl PreparedScene {
     /// Number of triangles.
     pub fn triangle_count(&self) -> usize {
         self.triangles.len()
+    }
+
+    /// Number of materials.
+    pub fn material_count(&self) -> usize {
+        self.materials.len()
+    }
+
+    /// Number of textures that its materials look up.
+    pub fn texture_count(&self) -> usize {
+        let looked_up: BTreeSet<u32> =
+            self.materials.iter().flat_map(|m| [m.diffuse_texture, m.cutout_texture]).collect();
+        looked_up.iter().filter(|&&texture| texture != NO_TEXTURE).count()
     }
 
     /// The names of its objects, by their ids: those that the plane of objects holds.

@@ -79,6 +79,9 @@ const _: () = assert!(size_of::<Head>() == 164);
 type LightWords = [f32; 6];
 
 impl PreparedScene {
+    /// The version of the format that is written and read here.
+    pub const BAKED_VERSION: u32 = VERSION;
+
     /// Whether a file that begins with these bytes (16 tell) is a baked scene, of whatever version.
     pub fn is_baked(first_bytes: &[u8]) -> bool {
         first_bytes.starts_with(MAGIC)
