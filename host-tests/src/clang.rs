@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Kernels through clang, for a 32-bit target as on the phone, without any device.
+//! What is compiled by clang: kernels, for a 32-bit target as on the phone, without any device; and OpenCL libraries with faults.
 #![allow(clippy::unwrap_used)]
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::OnceLock;
 
 use crate::command::root;
 
@@ -40,6 +41,25 @@ pub fn check(clang: &str, file: &Path, options: &str) -> Result<(), String> {
 /// What the compiler said.
 pub fn intermediate_code(clang: &str, file: &Path, options: &str) -> Result<String, String> {
     run(clang, file, options, &["-O2", "-S", "-emit-llvm", "-o", "-"])
+}
+
+/// A library of what `linked` names and of `source`, a file in `host-tests/drivers`.
+///
+/// # Panics
+/// Without clang, and if it does not compile.
+pub fn driver_library(source: &str, linked: &[&str]) -> PathBuf {
+    static FOLDER: OnceLock<tempfile::TempDir> = OnceLock::new();
+    let folder = FOLDER.get_or_init(|| tempfile::tempdir().unwrap()).path();
+    let built = folder.join(format!("lib{}-{:?}.so", source.replace('.', "-"), std::thread::current().id()));
+    let output = Command::new(clang().unwrap())
+        .args(["-std=gnu11", "-Wall", "-Wextra", "-Wno-unused-parameter", "-Werror", "-shared", "-fPIC", "-o"])
+        .arg(&built)
+        .arg(root().join("host-tests/drivers").join(source))
+        .args(linked)
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    built
 }
 
 fn run(clang: &str, file: &Path, options: &str, what: &[&str]) -> Result<String, String> {

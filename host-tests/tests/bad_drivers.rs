@@ -7,35 +7,17 @@
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 use rarefy::{
     CacheFolder, DeviceChoice, DeviceOptions, Error, Keep, Method, Monitor, PreparedScene, RenderOptions, Renderer,
     Shading, builtin,
 };
-use rarefy_host_tests::clang::clang;
-use rarefy_host_tests::command::root;
+use rarefy_host_tests::clang::{clang, driver_library};
 use rarefy_host_tests::frames::no_opencl;
 
 /// Set in the processes that tests start: the folder of their caches.
 const CHILD: &str = "RAREFY_TEST_CHILD_CACHE";
-
-/// A library of the system's OpenCL and of `source`, a file beside the tests.
-fn library(source: &str, linked: &[&str]) -> PathBuf {
-    static FOLDER: OnceLock<tempfile::TempDir> = OnceLock::new();
-    let folder = FOLDER.get_or_init(|| tempfile::tempdir().unwrap()).path();
-    let built = folder.join(format!("lib{}-{:?}.so", source.replace('.', "-"), std::thread::current().id()));
-    let clang = clang().unwrap();
-    let output = Command::new(clang)
-        .args(["-std=gnu11", "-Wall", "-Wextra", "-Wno-unused-parameter", "-Werror", "-shared", "-fPIC", "-o"])
-        .arg(&built)
-        .arg(root().join("host-tests/drivers").join(source))
-        .args(linked)
-        .output()
-        .unwrap();
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    built
-}
 
 /// What a start came to.
 #[derive(Debug)]
@@ -75,7 +57,7 @@ impl Driver {
         if no_opencl() || clang().is_none() {
             return None;
         }
-        let library = library("bad_driver.c", &["-l:libOpenCL.so.1", "-ldl"]);
+        let library = driver_library("bad_driver.c", &["-l:libOpenCL.so.1", "-ldl"]);
         let variables = vec![("BAD_DRIVER", fault.to_owned())];
         Some(Driver { library, folder: tempfile::tempdir().unwrap(), variables })
     }
@@ -213,6 +195,14 @@ fn a_compiler_that_ends_the_process_is_named_at_the_next_start_and_not_asked_aga
     mended.start_with(&[("RETRY", "yes")]).draws_on("opencl", &[]);
     mended.start().draws_on("opencl", &[]);
     assert_eq!(mended.files("marker"), 1, "that of the newer driver");
+}
+
+#[test]
+fn a_compiler_that_dies_of_every_program_ends_one_start() {
+    let Some(driver) = Driver::with("compiler-exits") else { return };
+    assert_eq!(driver.start().status, Some(7), "the driver calls exit");
+    driver.start().draws_on("cpu", &["passed over: crashed: ", "building program `"]);
+    assert_eq!(driver.files("marker"), 1, "one program was tried");
 }
 
 #[test]
@@ -379,7 +369,7 @@ fn a_library_that_the_caller_names_comes_first_and_others_are_told() {
     let wrong = driver.start_with(&[("LIBRARY", "/nonexistent/libY.so")]);
     wrong.draws_on("opencl", &[&format!("library: {named}\n"), "refused library: /nonexistent/libY.so: "]);
     // The OpenCL of Pixel phones is known, and said to be what it is.
-    let pixel = library("pixel.c", &[]);
+    let pixel = driver_library("pixel.c", &[]);
     let start = driver.start_with(&[("LIBRARY", pixel.to_str().unwrap())]);
     start.draws_on(
         "opencl",

@@ -211,7 +211,9 @@ impl OpenClExecutor {
     /// [`crate::Error::KernelBuild`]; [`crate::Error::DriverCrashed`] if a process ended in its compiler before.
     pub(crate) fn build_usual(&mut self, shading: Shading) -> Result<()> {
         let flavour = self.flavour(shading, false);
-        for kernel in [Kernel::Trace, Kernel::Check, Kernel::PackCount, Kernel::CorrectMark] {
+        // That of packing first, which was tried for its work-groups: if it ended an earlier start, no other program is
+        // tried, whose compiling might end this one.
+        for kernel in [Kernel::PackCount, Kernel::Trace, Kernel::Check, Kernel::CorrectMark] {
             self.build(kernel, flavour)?;
         }
         if self.prefers_few_launches() { self.build(Kernel::CorrectTail, flavour) } else { Ok(()) }
