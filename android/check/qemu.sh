@@ -1,15 +1,18 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
 # shellcheck shell=bash
-# Runs the very files that ship in an ARM Java VM under qemu: glibc and stand-ins of android/qemu take bionic's place, so this
+# Runs the very files that ship in a Java VM of each ABI under qemu: glibc and stand-ins of android/qemu take bionic's place, so this
 # tests the files' own code, relocations and unwinding, and not bionic. Sourced by android/check.sh.
 
-debian_architecture() { case $1 in arm64-v8a) echo arm64 ;; armeabi-v7a) echo armel ;; esac; }
-gnu_target() { case $1 in arm64-v8a) echo aarch64-linux-gnu ;; armeabi-v7a) echo arm-linux-gnueabi ;; esac; }
+# As often a scene is opened, drawn and closed.
+rounds=1000
+
+debian_architecture() { case $1 in arm64-v8a) echo arm64 ;; armeabi-v7a) echo armel ;; x86_64) echo amd64 ;; esac; }
+gnu_target() { case $1 in arm64-v8a) echo aarch64-linux-gnu ;; armeabi-v7a) echo arm-linux-gnueabi ;; x86_64) echo x86_64-linux-gnu ;; esac; }
 # Android's calls pass floats in integer registers, as Debian's armel does and armhf does not.
-qemu_binary() { case $1 in arm64-v8a) echo qemu-aarch64 ;; armeabi-v7a) echo qemu-arm ;; esac; }
+qemu_binary() { case $1 in arm64-v8a) echo qemu-aarch64 ;; armeabi-v7a) echo qemu-arm ;; x86_64) echo qemu-x86_64 ;; esac; }
 foreign_packages() {
     case $1 in
-    arm64-v8a) echo openjdk-17-jre-headless openjdk-17-jre-zero libc6 libgcc-s1 libstdc++6 zlib1g ;;
+    arm64-v8a | x86_64) echo openjdk-17-jre-headless openjdk-17-jre-zero libc6 libgcc-s1 libstdc++6 zlib1g ;;
     armeabi-v7a) echo openjdk-17-jre-headless libc6 libgcc-s1 libstdc++6 libatomic1 zlib1g ;;
     esac
 }
@@ -71,8 +74,8 @@ in_qemu() { # ABI CLASS ARGUMENTS...
     shift 2
     java=$(find "$root" -path '*/bin/java' | head -n 1)
     # A Java VM without a compiler of its own, where there is one: qemu compiles already.
-    vm=-server
-    [ "$abi" != arm64-v8a ] || vm=-zero
+    vm=-zero
+    [ "$abi" != armeabi-v7a ] || vm=-server
     RAREFY_LIBRARY=$(library_file "$abi") RAREFY_PROBE=$(probe_file "$abi") \
         timeout 1200 "$(qemu_binary "$abi")" -L "$root" -E "LD_LIBRARY_PATH=$folder" "$java" $vm -Xmx256m -XX:+UseSerialGC \
         -Xshare:off -Dfile.encoding=UTF-8 "-Ddev.rarefy.library=$folder/load_library.so" \
@@ -80,14 +83,16 @@ in_qemu() { # ABI CLASS ARGUMENTS...
 }
 
 run_in_qemu() { # ABI
-    local abi=$1 out=$work/qemu/$1/pictures output class name
+    local abi=$1 out=$work/qemu/$1/pictures output class name start
     rm -rf "$out"
     mkdir -p "$out"
-    for class in "PictureTest cpu $work/qemu/spheres $work/qemu/spheres.baked $out"; do
+    for class in "PictureTest cpu $work/qemu/spheres $work/qemu/spheres.baked $out" GuardProbe TargetTest "MisuseTest $out" \
+        "ThreadsTest cpu $rounds"; do
+        start=$SECONDS
         # shellcheck disable=SC2086 # the class and its arguments
         output=$(in_qemu "$abi" $class 2>&1) || fail "$abi: $class: $output"
         grep -qx done <<<"$output" || fail "$abi: $class did not come to its end: $output"
-        say "$abi: ${class%% *}: as it should be"
+        say "$abi: ${class%% *}: as it should be, in $((SECONDS - start)) s"
     done
     for name in balanced fast paper full; do
         cmp "$out/$name" "$work/qemu/desktop/$name" || fail "$abi: the picture $name is not the desktop's"
@@ -97,11 +102,11 @@ run_in_qemu() { # ABI
 
 # The desktop's pictures, to compare with.
 draw_on_desktop() {
-    (unset RUSTC RUSTDOC && cargo build --quiet --workspace)
+    need_desktop_library
     rm -rf "$work/qemu/spheres" "$work/qemu/desktop"
     mkdir -p "$work/qemu/desktop"
     target/debug/rarefy make-scene spheres -o "$work/qemu/spheres" >/dev/null
     target/debug/rarefy bake "$work/qemu/spheres" -o "$work/qemu/spheres.baked" >/dev/null
-    java -Xmx512m "-Ddev.rarefy.library=$PWD/target/debug/librarefy_jni.so" -cp "$work/qemu/classes" dev.rarefy.PictureTest cpu \
+    java -Xmx512m "-Ddev.rarefy.library=$(desktop_library)" -cp "$work/qemu/classes" dev.rarefy.PictureTest cpu \
         "$work/qemu/spheres" "$work/qemu/spheres.baked" "$work/qemu/desktop" | grep -qx done || fail "the desktop does not draw"
 }

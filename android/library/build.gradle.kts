@@ -9,7 +9,7 @@ plugins {
 group = "dev.rarefy"
 version = "0.1.0"
 
-val abis = listOf("arm64-v8a", "armeabi-v7a")
+val abis = listOf("arm64-v8a", "armeabi-v7a", "x86_64")
 
 android {
     namespace = "dev.rarefy"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // What Android's libc and libdl are called or shaped like, on top of glibc: just as much as librarefy_jni.so asks for, to run
-// that file in an ARM Java VM under qemu. It stands for bionic; it does not test bionic.
+// that file in a Java VM of its ABI under qemu. It stands for bionic; it does not test bionic.
 
 typedef unsigned long size_t;
 

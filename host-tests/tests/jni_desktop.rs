@@ -10,9 +10,10 @@
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, Output};
 use std::sync::OnceLock;
 
+use rarefy_host_tests::clang::{clang, driver_library};
 use rarefy_host_tests::command::{rarefy_in, root};
 use rarefy_host_tests::frames::no_opencl;
 
@@ -61,6 +62,14 @@ impl Jdk {
 
     /// Runs a class of `dev.rarefy` under `-Xcheck:jni`; returns all that it printed.
     fn run(&self, classes: &Path, class: &str, arguments: &[&str], variables: &[(&str, &str)]) -> String {
+        let output = self.output(classes, class, arguments, variables);
+        let text = all_text(&output);
+        assert!(output.status.success(), "{class}: {}\n{text}", output.status);
+        text
+    }
+
+    /// As [`Jdk::run`], whatever becomes of it.
+    fn output(&self, classes: &Path, class: &str, arguments: &[&str], variables: &[(&str, &str)]) -> Output {
         let mut java = Command::new(&self.java);
         if let Some(libjsig) = &self.libjsig {
             java.env("LD_PRELOAD", libjsig);
@@ -75,11 +84,7 @@ impl Jdk {
         java.arg(property("dev.rarefy.probe", "examples/libguard_probe.so"));
         java.arg(format!("-Ddev.rarefy.classes={}", self::classes(self).display()));
         java.arg("-cp").arg(classes).arg(format!("dev.rarefy.{class}")).args(arguments);
-        let output = java.envs(variables.iter().copied()).output().unwrap();
-        let mut text = String::from_utf8_lossy(&output.stdout).into_owned();
-        text += &String::from_utf8_lossy(&output.stderr);
-        assert!(output.status.success(), "{java:?}: {}\n{text}", output.status);
-        text
+        java.envs(variables.iter().copied()).output().unwrap()
     }
 
     /// Runs one of the Java tests, which must come to its end and break no rule of JNI.
@@ -103,6 +108,11 @@ impl Jdk {
         assert!(jni_complaints(&output).is_empty(), "{output}");
         output
     }
+}
+
+/// Standard output, then standard error.
+fn all_text(output: &Output) -> String {
+    [&output.stdout, &output.stderr].map(|text| String::from_utf8_lossy(text).into_owned()).concat()
 }
 
 /// The Java files in a folder; of the library those that do not need Android's classes.
@@ -247,6 +257,40 @@ fn without_opencl_the_cpu_draws_and_says_so() {
 }
 
 #[test]
+fn an_app_names_its_opencl_and_asks_for_a_retry_after_a_crash() {
+    let Some(jdk) = Jdk::find() else { return };
+    if no_opencl() || clang().is_none() {
+        return;
+    }
+    let library = driver_library("bad_driver.c", &["-l:libOpenCL.so.1", "-ldl"]);
+    let library = library.to_str().unwrap();
+    let caches = tempfile::tempdir().unwrap();
+    let caches = caches.path().to_str().unwrap();
+    let start = |fault: &str, retry: &str| {
+        let variables = [("BAD_DRIVER", fault), ("OPENCL_DYLIB_PATH", "/nonexistent/libX.so")];
+        let output = jdk.output(classes(&jdk), "BadDriverTest", &[library, caches, retry], &variables);
+        (output.status.code(), all_text(&output))
+    };
+    let (status, text) = start("compiler-exits", "false");
+    assert_eq!(status, Some(7), "the driver calls exit: {text}");
+    // Remembered: the driver is not asked again, not even a mended one, until the app says so.
+    for (fault, retry, parts) in [
+        ("compiler-exits", "false", &["backend: cpu\n", "passed over: DRIVER_CRASHED: "][..]),
+        ("none", "false", &["backend: cpu\n", "passed over: DRIVER_CRASHED: "]),
+        ("none", "true", &["backend: opencl\n"]),
+        ("none", "false", &["backend: opencl\n"]),
+    ] {
+        let (status, text) = start(fault, retry);
+        assert_eq!(status, Some(0), "{fault}, {retry}: {text}");
+        for part in parts.iter().copied().chain([&format!("library: {library}\n") as &str, "done\n"]) {
+            assert!(text.contains(part), "{fault}, {retry}: no `{part}` in {text}");
+        }
+        assert!(jni_complaints(&text).is_empty(), "{text}");
+    }
+    assert!(!start("none", "false").1.contains("passed over: "));
+}
+
+#[test]
 fn errors_and_panics_become_exceptions_with_their_text() {
     let Some(jdk) = Jdk::find() else { return };
     // On a phone, an app's classes are in a class loader of their own, which threads of Rust do not know.
@@ -312,17 +356,24 @@ fn classes_that_do_not_fit_are_refused_with_the_reason() {
     }
 }
 
+/// The lines of README's only example in `language`, which must stand in `file` as they are.
+fn example(language: &str, file: &str) {
+    let text = |path: &str| std::fs::read_to_string(root().join(path)).unwrap();
+    let readme = text("README.md");
+    let (_, rest) =
+        readme.split_once(&format!("```{language}\n")).unwrap_or_else(|| panic!("no example in {language}"));
+    let lines = |text: &str| text.trim().lines().map(|line| line.trim().to_owned()).collect::<Vec<_>>();
+    let (wanted, found) = (lines(rest.split_once("```").unwrap().0), lines(&text(file)));
+    assert_eq!(wanted.len(), 5, "README promises five lines: {wanted:?}");
+    assert!(found.windows(5).any(|five| five == wanted), "{file} has not README's example: {wanted:?}");
+}
+
 #[test]
-fn the_example_of_the_readme_runs() {
+fn the_examples_of_the_readme_run() {
     let Some(jdk) = Jdk::find() else { return };
-    let readme = std::fs::read_to_string(root().join("README.md")).unwrap();
-    let (_, rest) = readme.split_once("```java\n").expect("README has an example in Java");
-    let example = rest.split_once("```").unwrap().0;
-    assert_eq!(example.trim().lines().count(), 5, "README promises five lines: {example}");
-    let source = std::fs::read_to_string(root().join("android/library/src/test/java/dev/rarefy/Hello.java")).unwrap();
-    let lines = |text: &str| text.lines().map(|line| line.trim().to_owned()).collect::<Vec<_>>();
-    let (wanted, found) = (lines(example.trim()), lines(&source));
-    assert!(found.windows(5).any(|five| five == wanted), "Hello.java is not README's example: {example}");
+    example("java", "android/library/src/test/java/dev/rarefy/Hello.java");
+    // android/check.sh compiles and runs this one, with a compiler of Maven Central's.
+    example("kotlin", "android/library/src/kotlin/Use.kt");
     let output = jdk.run(classes(&jdk), "Hello", &[], &[]);
     assert!(output.contains("640x480 in ") && output.contains(" % traced"), "{output}");
     assert!(jni_complaints(&output).is_empty(), "{output}");

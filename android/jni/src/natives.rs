@@ -344,31 +344,20 @@ fn render_surface<'local>(
 }
 
 #[cfg(not(target_os = "android"))]
-fn render_bitmap<'local>(
-    _env: &mut Env<'local>,
-    _class: JClass<'local>,
-    _handle: jlong,
-    _frame: JObjectArray<'local, JString<'local>>,
-    _bitmap: JObject<'local>,
-    _progress: JObject<'local>,
-    _preview: JObject<'local>,
-) -> Done<JObject<'local>> {
-    Err(Failure::Target("there are no Bitmaps here: this library was built for another system than Android".to_owned()))
-}
+use {self::no_target as render_bitmap, self::no_target as render_surface};
 
 #[cfg(not(target_os = "android"))]
-fn render_surface<'local>(
+fn no_target<'local>(
     _env: &mut Env<'local>,
     _class: JClass<'local>,
     _handle: jlong,
     _frame: JObjectArray<'local, JString<'local>>,
-    _surface: JObject<'local>,
+    _target: JObject<'local>,
     _progress: JObject<'local>,
     _preview: JObject<'local>,
 ) -> Done<JObject<'local>> {
-    Err(Failure::Target(
-        "there are no Surfaces here: this library was built for another system than Android".to_owned(),
-    ))
+    let text = "there are no Bitmaps and no Surfaces here: this library was built for another system than Android";
+    Err(Failure::Target(text.to_owned()))
 }
 
 /// A `FrameStats` of a frame.

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 package app;
 
-import android.graphics.Bitmap;
-import android.view.Surface;
-import dev.rarefy.BitmapTarget;
 import dev.rarefy.Layer;
 import dev.rarefy.OpenClReport;
 import dev.rarefy.OpenOptions;
@@ -11,20 +8,15 @@ import dev.rarefy.RayTracer;
 import dev.rarefy.RayTracerException;
 import dev.rarefy.RenderOptions;
 import dev.rarefy.SceneSource;
-import dev.rarefy.SurfaceTarget;
 import java.io.ByteArrayInputStream;
 import java.io.File;
 import java.nio.ByteBuffer;
 
-/** An app of another developer's, which android/check.sh compiles against the AAR. */
+/**
+ * An app of another developer's, which android/check.sh builds against the AAR, shrinks and runs.
+ */
 public final class Main {
   private Main() {}
-
-  /** What only a phone can run. */
-  public static void onPhone(RayTracer tracer, Bitmap bitmap, Surface surface) {
-    tracer.render(RenderOptions.defaults(), BitmapTarget.of(bitmap));
-    tracer.render(RenderOptions.defaults(), SurfaceTarget.of(surface));
-  }
 
   public static void main(String[] arguments) {
     OpenOptions cpu = OpenOptions.builder().device("cpu").progress((phase, share) -> {}).build();
@@ -54,9 +46,6 @@ public final class Main {
       System.out.println(tracer.deviceInfo() + ", version " + RayTracer.version());
       System.out.println(OpenClReport.look(cpu));
       tracer.cancel();
-      if (arguments.length > 0) {
-        onPhone(tracer, null, null);
-      }
     }
     System.out.println("done");
   }

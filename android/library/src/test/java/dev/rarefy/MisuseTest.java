@@ -15,9 +15,9 @@ import java.util.concurrent.atomic.AtomicReference;
 final class MisuseTest {
   private static final RenderOptions SMALL = RenderOptions.ofSize(8, 8);
 
-  /** One that takes seconds, if nobody ends it. */
+  /** One that takes seconds, if nobody ends it, and fits into 32 bits of addresses. */
   private static final RenderOptions LARGE =
-      RenderOptions.builder().size(2000, 2000).samples(4).build();
+      RenderOptions.builder().size(1000, 1000).samples(4).build();
 
   private MisuseTest() {}
 
@@ -323,7 +323,7 @@ final class MisuseTest {
               }
             });
     other.start();
-    ByteBuffer pixels = RayTracer.allocate(2000, 2000);
+    ByteBuffer pixels = RayTracer.allocate(1000, 1000);
     Check.coded(RayTracerException.Code.CANCELLED, "cancelled", () -> tracer.render(LARGE, pixels));
     other.join();
   }
