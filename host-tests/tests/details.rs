@@ -6,7 +6,7 @@
 use rarefy::internal::analysis::metrics::{self, Rgb8};
 use rarefy::internal::layout::PLANE_OBJECT;
 use rarefy::internal::method::counts::Keep;
-use rarefy::internal::method::fallback::{does_not_pay, loses_detail};
+use rarefy::internal::method::fallback::{does_not_pay, may_lose_detail};
 use rarefy::internal::method::options::{Correction, Method, Mode, RenderOptions, TextureRule};
 use rarefy::{Frame, Scene};
 use rarefy_host_tests::details::{SIDE, scenes};
@@ -29,13 +29,13 @@ fn measure(name: &str, scene: Scene, change: impl Fn(&mut Method)) -> [f64; 2] {
         let psnr = metrics::psnr(picture(&full.pixels), picture(&frame.pixels)).unwrap();
         let wrong = metrics::wrong_pixels(&objects, &renderer.plane(PLANE_OBJECT).unwrap(), SIDE, SIDE).unwrap();
         let stats = &frame.stats;
-        let falls_back = loses_detail(&stats.pixels) || does_not_pay(&stats.pixels);
+        let falls_back = may_lose_detail(&stats.pixels) || does_not_pay(&stats.pixels);
         row += &format!(
             " {:.3} | {:.3} | {}{} | {} |",
             stats.ray_traced_ratio(),
             stats.ray_traced_ratio_with_correction(),
             psnr.map_or("same".into(), |db| format!("{db:.1}")),
-            match (loses_detail(&stats.pixels), falls_back) {
+            match (may_lose_detail(&stats.pixels), falls_back) {
                 (true, _) => ", so full",
                 (false, true) => ", then full",
                 _ => "",
@@ -64,7 +64,7 @@ fn a_frame_that_lost_detail_is_drawn_in_full() {
     let options = |mode| RenderOptions { width: SIDE, height: SIDE, mode, ..RenderOptions::default() };
     let full = renderer.render(&options(Mode::Full), Keep::COUNTERS).unwrap();
     let adaptive = renderer.render_exactly(&options(Mode::Adaptive), Keep::COUNTERS).unwrap();
-    assert!(loses_detail(&adaptive.stats.pixels) && adaptive.pixels != full.pixels);
+    assert!(may_lose_detail(&adaptive.stats.pixels) && adaptive.pixels != full.pixels);
     // The cost is that of both; of the following frames that of full tracing.
     let work = |frame: &Frame| frame.stats.work.unwrap().traversal();
     for cost in [work(&full) + work(&adaptive), work(&full)] {

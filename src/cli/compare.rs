@@ -10,7 +10,7 @@ use rarefy::internal::analysis::report::CompareReport;
 use rarefy::internal::analysis::wave_model::wave_model;
 use rarefy::internal::analysis::wave_model::{StageCost, WAVES, WaveModel};
 use rarefy::internal::device::stage::Stage;
-use rarefy::internal::method::fallback::{does_not_pay, loses_detail};
+use rarefy::internal::method::fallback::{does_not_pay, may_lose_detail};
 use rarefy::internal::method::options::{Mode, RenderOptions};
 use rarefy::internal::render::picture::write_png;
 use rarefy::internal::render::renderer::Renderer;
@@ -118,7 +118,7 @@ fn table(renderer: &mut Renderer, options: &RenderOptions, c: &Comparison) -> Ve
     ];
     let stages = Stage::ALL.map(|s| format!("{} {:.1}", s.name(), c.adaptive.stages_ms[s as usize])).join("  ");
     lines.push(format!("  stages/ms  {stages}  other {:.1}", c.adaptive.other_ms()));
-    if loses_detail(p) {
+    if may_lose_detail(p) {
         lines.push("  falls back by its own counters: `rarefy render` draws this frame in full".to_owned());
     } else if does_not_pay(p) {
         lines.push("  falls back by its own counters: following frames would be traced in full".to_owned());

@@ -42,7 +42,7 @@ pub fn run(args: &RenderArgs, interrupt: &Interrupt) -> Result<()> {
     let (mut renderer, load_ms) =
         make_renderer(&args.draw.scene, args.draw.shading, &args.draw.device_options()?, &outputs, interrupt)?;
     let notices = renderer.notices().len();
-    // Whoever looks at what the method did wants to see it where it lost detail too.
+    // Whoever looks at what the method did wants to see it where it may lose detail too.
     let wants_method = layers.iter().any(|(layer, _)| layer.is_adaptive_only());
     let frame = watched(&mut renderer, interrupt, |renderer| match wants_method {
         true => renderer.render_exactly(&options, keep),
@@ -75,7 +75,10 @@ pub fn run(args: &RenderArgs, interrupt: &Interrupt) -> Result<()> {
         ),
     );
     if frame.stats.fell_back {
-        say(json, "traced in full: the adaptive frame lost detail, or frames before cost as much as full ones");
+        say(
+            json,
+            "traced in full: the adaptive frame may have lost detail, or frames before cost as much as full ones",
+        );
     }
     match json {
         Some(path) => write_json(path, &RenderReport::new(&mut renderer, &options, &frame, load_ms)),

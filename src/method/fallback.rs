@@ -19,7 +19,7 @@ const FRAMES_BEFORE_RETRY: u32 = 30;
 /// Decides from each adaptive frame's own counters whether the following ones should be full.
 ///
 /// An adaptive frame is taken to cost `base + 1.5 (traced + corrected) + 0.06 (all - base)` average rays; if that is
-/// not less than one ray a pixel, or if the frame [loses detail](loses_detail), the next 30 frames with the same options are
+/// not less than one ray a pixel, or if the frame [may lose detail](may_lose_detail), the next 30 frames with the same options are
 /// traced in full.
 #[derive(Debug, Clone, Default)]
 pub struct Fallback {
@@ -44,14 +44,14 @@ impl Fallback {
     }
 }
 
-/// Whether frames like this one should be traced in full: they cost as much, or lose detail.
+/// Whether frames like this one should be traced in full: they cost as much, or may lose detail.
 pub fn does_not_pay(pixels: &PixelCounts) -> bool {
-    modelled_cost(pixels) >= 1.0 || loses_detail(pixels)
+    modelled_cost(pixels) >= 1.0 || may_lose_detail(pixels)
 }
 
-/// Whether interpolation was so often wrong, by what correction found, that much more is wrong that it did not find: such
+/// Whether interpolation was so often wrong, by what correction found, that more may be wrong that it did not find: such
 /// a frame is drawn again in full. Correction traced more than a tenth of what had been interpolated.
-pub fn loses_detail(pixels: &PixelCounts) -> bool {
+pub fn may_lose_detail(pixels: &PixelCounts) -> bool {
     let rebuilt = pixels.interpolated + pixels.corrected;
     pixels.corrected as f64 > MOST_CORRECTED * rebuilt as f64
 }

@@ -49,7 +49,7 @@ pub struct FrameStats {
     /// How often each test failed, in the order of [`crate::method::options::Test::ALL`], if counters were kept.
     pub failed_tests: Option<[u64; 7]>,
     /// An adaptive frame was asked for and a full one drawn, because the method did not pay in frames before, or because
-    /// the adaptive one had lost detail: times, rays and work are then those of both.
+    /// the adaptive one may have lost detail: times, rays and work are then those of both.
     pub fell_back: bool,
 }
 

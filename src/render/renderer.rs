@@ -21,7 +21,7 @@ use crate::layout::{FrameParams, PLANE_COUNT};
 use crate::method::bands::{FrameBudget, Plan};
 use crate::method::camera::frame_inputs;
 use crate::method::counts::Keep;
-use crate::method::fallback::{Fallback, loses_detail};
+use crate::method::fallback::{Fallback, may_lose_detail};
 use crate::method::frame::draw_frame;
 use crate::method::options::{Mode, RenderOptions};
 use crate::monitor::Monitor;
@@ -109,7 +109,7 @@ impl Renderer {
         })
     }
 
-    /// Draws a frame. An adaptive frame whose own counters show that it lost detail is drawn once more, in full; it, and one
+    /// Draws a frame. An adaptive frame that by its own counters may have lost detail is drawn once more, in full; it, and one
     /// that cost as much as full tracing, makes the following ones full (see [`Fallback`]). The statistics say so.
     ///
     /// The renderer's monitor is told how far it is, and can cancel it. After any error the renderer is usable, and what
@@ -130,7 +130,7 @@ impl Renderer {
         if !self.fallback.choose_full(options) {
             let frame = self.render_exactly(options, keep)?;
             self.fallback.learn(options, &frame.stats.pixels);
-            if !loses_detail(&frame.stats.pixels) {
+            if !may_lose_detail(&frame.stats.pixels) {
                 return Ok(frame);
             }
             spent = Some(frame.stats);
