@@ -101,13 +101,13 @@ pub struct MethodArgs {
     /// Post-correction: largest distance of reflected colours that are taken to be the same.
     #[arg(long, allow_negative_numbers = true, value_name = "DISTANCE")]
     pub correction_t_gcol: Option<f32>,
-    /// Converged post-correction: spare neighbours that a straight edge or line passes by?
+    /// Converged post-correction: whether neighbours that a straight edge or line passes by are spared.
     #[arg(long, value_name = "true|false")]
     pub correction_thin_only: Option<bool>,
-    /// Converged post-correction: look across the gaps of lines thinner than a pixel?
+    /// Converged post-correction: whether it looks across the gaps of lines thinner than a pixel.
     #[arg(long, value_name = "true|false")]
     pub correction_bridges: Option<bool>,
-    /// Converged post-correction: trace one pixel of every 16x16 that nothing has asked for?
+    /// Converged post-correction: whether one pixel of every 16x16 that nothing has asked for is traced.
     #[arg(long, value_name = "true|false")]
     pub correction_probes: Option<bool>,
 }

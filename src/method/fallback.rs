@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Never slower than full, and never much worse: where the method does not pay frames are traced in full.
+//! Where the method does not pay, or may lose detail, frames are traced in full.
 
 use crate::method::counts::PixelCounts;
 use crate::method::options::RenderOptions;
@@ -10,8 +10,8 @@ const PACKED_RAY_COST: f64 = 1.5;
 /// What checking, interpolating and packing cost per adaptive pixel, in average rays.
 const CHECK_COST: f64 = 0.06;
 /// Where correction traces more than this share of the pixels that had been interpolated, detail is finer than the grid of
-/// samples, and much of it is lost. (docs/method.md, section 7: scenes that lose it have 0.12 and more, the six real ones
-/// at 512x512 0.07 at most.)
+/// samples, and more of it may be lost. (docs/method.md, section 7: fences that are lost have 0.12 and more, the six real
+/// scenes at 512x512 0.07 at most; single dots and hair, which nothing finds, have less.)
 const MOST_CORRECTED: f64 = 0.1;
 /// After this many full frames the method gets another try: the view may have become easier.
 const FRAMES_BEFORE_RETRY: u32 = 30;
@@ -19,8 +19,8 @@ const FRAMES_BEFORE_RETRY: u32 = 30;
 /// Decides from each adaptive frame's own counters whether the following ones should be full.
 ///
 /// An adaptive frame is taken to cost `base + 1.5 (traced + corrected) + 0.06 (all - base)` average rays; if that is
-/// not less than one ray a pixel, or if the frame [may lose detail](may_lose_detail), the next 30 frames with the same options are
-/// traced in full.
+/// not less than one ray a pixel, or if the frame [may lose detail](may_lose_detail), the next 30 frames with the same
+/// options are traced in full.
 #[derive(Debug, Clone, Default)]
 pub struct Fallback {
     options: Option<RenderOptions>,

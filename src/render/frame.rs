@@ -59,7 +59,7 @@ impl FrameStats {
         (self.frame_ms - self.stages_ms.iter().sum::<f64>()).max(0.0)
     }
 
-    /// Adds what a frame cost that was drawn for this one and is not shown.
+    /// Adds what a frame cost that was drawn for this one and is not shown. `work_by_class` stays this frame's.
     pub(crate) fn add_cost(&mut self, spent: &FrameStats) {
         self.frame_ms += spent.frame_ms;
         self.stages_ms.iter_mut().zip(spent.stages_ms).for_each(|(ms, more)| *ms += more);

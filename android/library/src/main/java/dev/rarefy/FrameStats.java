@@ -89,7 +89,8 @@ public final class FrameStats {
   }
 
   /**
-   * Whether every pixel had rays although the frame was to be adaptive, since that is cheaper here.
+   * Whether every pixel had rays although the frame was to be adaptive: that is cheaper here, or
+   * detail might have been lost.
    */
   public boolean isFellBack() {
     return counts[4] != 0;
