@@ -36,6 +36,7 @@ public final class Benchmark {
   private final RayTracer tracer;
   private final Plan plan;
   private final Watch watch;
+  private final List<Line> lines = new ArrayList<>();
   private int done;
 
   private Benchmark(RayTracer tracer, Plan plan, Watch watch) {
@@ -67,6 +68,43 @@ public final class Benchmark {
     }
   }
 
+  /** What came of it. */
+  public static final class Result {
+    private final String json;
+    private final List<Line> lines;
+
+    Result(String json, List<Line> lines) {
+      this.json = json;
+      this.lines = lines;
+    }
+
+    /** All figures, to be shared. */
+    public String json() {
+      return json;
+    }
+
+    /** The most important ones, a line for each method. */
+    public List<Line> lines() {
+      return lines;
+    }
+  }
+
+  /** A method's figures. */
+  public static final class Line {
+    final RenderOptions.Method method;
+    final double fullMillis;
+    final double adaptiveMillis;
+    final double tracedShare;
+
+    Line(
+        RenderOptions.Method method, double fullMillis, double adaptiveMillis, double tracedShare) {
+      this.method = method;
+      this.fullMillis = fullMillis;
+      this.adaptiveMillis = adaptiveMillis;
+      this.tracedShare = tracedShare;
+    }
+  }
+
   /** Hears how far the benchmark is. */
   interface Watch {
     /** From 0 to 1. Whether to go on. */
@@ -78,7 +116,7 @@ public final class Benchmark {
   }
 
   /** The result; null if the watch said stop. */
-  static @Nullable String run(RayTracer tracer, Plan plan, Watch watch) {
+  static @Nullable Result run(RayTracer tracer, Plan plan, Watch watch) {
     Benchmark benchmark = new Benchmark(tracer, plan, watch);
     List<Object> rows = new ArrayList<>();
     try {
@@ -91,7 +129,7 @@ public final class Benchmark {
     Map<String, @Nullable Object> all = new LinkedHashMap<>();
     all.put("rarefy", RayTracer.version());
     all.put("rows", rows);
-    return Json.text(all);
+    return new Result(Json.text(all), benchmark.lines);
   }
 
   /** Frames of a kind, and what they cost. */
@@ -184,6 +222,8 @@ public final class Benchmark {
         }) {
       row.put(unknown, null);
     }
+    lines.add(
+        new Line(method, full.frameMillis(), adaptive.frameMillis(), counts.getTracedShare()));
     return row;
   }
 

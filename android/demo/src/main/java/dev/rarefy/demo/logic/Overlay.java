@@ -4,6 +4,7 @@ package dev.rarefy.demo.logic;
 import dev.rarefy.DeviceInfo;
 import dev.rarefy.FrameStats;
 import dev.rarefy.RayTracerException;
+import dev.rarefy.RenderOptions;
 import java.text.NumberFormat;
 import java.util.ArrayList;
 import java.util.List;
@@ -97,6 +98,35 @@ public final class Overlay {
       }
     }
     return null;
+  }
+
+  /** What a benchmark found, a line for each method. */
+  public String benchmark(Benchmark.Result result) {
+    StringBuilder text = new StringBuilder();
+    for (Benchmark.Line line : result.lines()) {
+      text.append(text.length() == 0 ? "" : "\n")
+          .append(
+              words.say(
+                  Words.Word.BENCHMARK_ROW,
+                  words.say(name(line.method)),
+                  number(line.fullMillis, 1),
+                  number(line.adaptiveMillis, 1),
+                  number(line.fullMillis / line.adaptiveMillis, 2),
+                  percent(line.tracedShare)));
+    }
+    return text.toString();
+  }
+
+  private static Words.Word name(RenderOptions.Method method) {
+    switch (method) {
+      case BALANCED:
+        return Words.Word.METHOD_BALANCED;
+      case FAST:
+        return Words.Word.METHOD_FAST;
+      case PAPER:
+        return Words.Word.METHOD_PAPER;
+    }
+    throw new AssertionError(method);
   }
 
   private String sentence(Failure failure, String sceneName) {

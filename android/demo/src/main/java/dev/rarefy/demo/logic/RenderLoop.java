@@ -18,62 +18,10 @@ import org.jspecify.annotations.Nullable;
  * <p>While a finger moves, frames are coarse and come to their end, so that the picture moves. A
  * refined frame, or one that measures, is cancelled as soon as it is not wanted any more.
  */
-public final class RenderLoop {
-  private enum Task {
-    OPEN,
-    CLOSE,
-    COARSE,
-    REFINED,
-    COMPOSE,
-    MEASURE,
-    BENCHMARK,
-    QUIT
-  }
-
+public final class RenderLoop extends Schedule {
   private final Opener opener;
   private final long idleMillis;
   private final Thread thread;
-  private final Object lock = new Object();
-
-  // What is wanted. All of these, and those below, are guarded by the lock.
-  private SceneChoice scene;
-  private Settings settings;
-  private @Nullable Camera camera;
-  private @Nullable Screen screen;
-  private int screenWidth;
-  private int screenHeight;
-  private boolean running;
-  private boolean moving;
-  private boolean quit;
-  private boolean close;
-  private boolean retryCrashed;
-  private int thermalStatus;
-  private @Nullable Runnable listener;
-  private Benchmark.@Nullable Plan plan;
-
-  // What is there.
-  private @Nullable RayTracer tracer;
-  private @Nullable SceneChoice openScene;
-  private @Nullable Cancellation opening;
-  private @Nullable Camera start;
-  private @Nullable DeviceInfo device;
-  private @Nullable Failure failure;
-  private @Nullable FrameInfo info;
-  private Settings drawnSettings;
-  private @Nullable Task task;
-  private float progress;
-  private @Nullable String benchmark;
-
-  /** Counts what makes the frame another one; the frame on the screen has that of its start. */
-  private int wanted = 1;
-
-  private int startedWith;
-  private int drawn;
-  private int measured;
-  private boolean composed;
-  private boolean dropBuffers;
-  private long doneNanos;
-  private final Resolution resolution = new Resolution();
 
   /** Used by the loop's thread alone. */
   private final Frames frames = new Frames();
@@ -90,267 +38,16 @@ public final class RenderLoop {
       Settings settings,
       @Nullable Camera camera,
       long idleMillis) {
+    super(scene, settings, camera);
     this.opener = opener;
-    this.scene = scene;
-    this.settings = settings;
-    this.camera = camera;
     this.idleMillis = idleMillis;
-    drawnSettings = settings;
     thread = new Thread(this::work, "rarefy-demo");
     thread.start();
-  }
-
-  /** Who is told, on any thread and without a lock held, that {@link #state} is another one. */
-  public void setListener(@Nullable Runnable listener) {
-    synchronized (lock) {
-      this.listener = listener;
-    }
-  }
-
-  /** A surface came, or changed its size. */
-  public void setScreen(Screen screen, int width, int height) {
-    synchronized (lock) {
-      boolean resized = screenWidth != width || screenHeight != height;
-      this.screen = screen;
-      screenWidth = width;
-      screenHeight = height;
-      composed = false;
-      changed(resized);
-    }
-  }
-
-  /** The surface goes. The screen is not called any more once it forgets its surface itself. */
-  public void loseScreen() {
-    synchronized (lock) {
-      screen = null;
-      cancelFrame();
-      changed(false);
-    }
-    tell();
-  }
-
-  /** The app is in the foreground. */
-  public void resume() {
-    synchronized (lock) {
-      running = true;
-      changed(false);
-    }
-    tell();
-  }
-
-  /** The app is not in the foreground any more. Opening goes on. */
-  public void pause() {
-    synchronized (lock) {
-      running = false;
-      moving = false;
-      plan = null;
-      cancelFrame();
-      changed(false);
-    }
-    tell();
-  }
-
-  /** Another scene. */
-  public void setScene(SceneChoice scene) {
-    synchronized (lock) {
-      if (scene.equals(this.scene) && failure == null) {
-        return;
-      }
-      this.scene = scene;
-      camera = null;
-      start = null;
-      failure = null;
-      abandon();
-      changed(true);
-    }
-    tell();
-  }
-
-  /** Other settings. */
-  public void setSettings(Settings settings) {
-    synchronized (lock) {
-      boolean other = !settings.drawsAs(this.settings);
-      composed &= settings.equals(this.settings);
-      this.settings = settings;
-      changed(other);
-    }
-  }
-
-  /** Another camera. */
-  public void setCamera(Camera camera) {
-    synchronized (lock) {
-      if (start != null && !camera.equals(this.camera)) {
-        this.camera = camera;
-        changed(true);
-      }
-    }
-  }
-
-  /** The camera that the scene brings; null while it is not open. */
-  public @Nullable Camera startCamera() {
-    synchronized (lock) {
-      return start;
-    }
-  }
-
-  /** A finger began or ended to move something: frames are coarse meanwhile. */
-  public void setMoving(boolean moving) {
-    synchronized (lock) {
-      this.moving = moving;
-      changed(false);
-    }
-  }
-
-  /** A value of {@code PowerManager.THERMAL_STATUS_...}. */
-  public void setThermalStatus(int status) {
-    synchronized (lock) {
-      boolean other = ThermalPolicy.scale(status) != ThermalPolicy.scale(thermalStatus);
-      thermalStatus = status;
-      changed(other);
-    }
-  }
-
-  /**
-   * The system has little memory.
-   *
-   * @param unseen whether the app is in the background: then all is freed, and opened again later
-   */
-  public void trimMemory(boolean unseen) {
-    synchronized (lock) {
-      if (unseen && !running) {
-        abandon();
-        close = true;
-      } else if (info != null) {
-        dropBuffers = true;
-        resolution.shrink();
-      }
-      changed(true);
-    }
-    tell();
-  }
-
-  /**
-   * After a failure: opens the scene anew.
-   *
-   * @param crashed whether to try a driver again that ended the process
-   */
-  public void retry(boolean crashed) {
-    synchronized (lock) {
-      failure = null;
-      retryCrashed |= crashed;
-      abandon();
-      close = true;
-      changed(true);
-    }
-    tell();
-  }
-
-  /** Measures instead of drawing; {@link State#benchmark} has the result. */
-  public void benchmark(Benchmark.Plan plan) {
-    synchronized (lock) {
-      this.plan = plan;
-      benchmark = null;
-      cancelFrame();
-      changed(false);
-    }
-    tell();
-  }
-
-  /** Ends a benchmark without a result. */
-  public void cancelBenchmark() {
-    synchronized (lock) {
-      plan = null;
-      cancelFrame();
-      changed(false);
-    }
-    tell();
-  }
-
-  /** The result of the last benchmark was seen. */
-  public void takeBenchmark() {
-    synchronized (lock) {
-      benchmark = null;
-    }
-    tell();
-  }
-
-  /** Ends the thread and frees all. Nothing may be asked of the loop afterwards but its state. */
-  public void quit() {
-    synchronized (lock) {
-      quit = true;
-      listener = null;
-      abandon();
-      changed(false);
-    }
   }
 
   /** Waits for the end after {@link #quit}. */
   void join() throws InterruptedException {
     thread.join();
-  }
-
-  /** How far the loop is. */
-  public State state() {
-    synchronized (lock) {
-      return new State(phase(), progress, scene, camera, info, device, failure, benchmark);
-    }
-  }
-
-  private State.Phase phase() {
-    if (failure != null) {
-      return State.Phase.FAILED;
-    } else if (task == Task.OPEN) {
-      return State.Phase.OPENING;
-    } else if (!running || quit || screen == null) {
-      return State.Phase.RESTING;
-    } else if (tracer == null) {
-      return State.Phase.OPENING;
-    } else if (plan != null) {
-      return State.Phase.BENCHMARK;
-    }
-    return isDone() ? State.Phase.DONE : State.Phase.DRAWING;
-  }
-
-  private boolean isDone() {
-    return drawn == wanted && composed && info != null && info.isRefined();
-  }
-
-  /** With the lock: the loop looks again at what is wanted. */
-  private void changed(boolean otherFrame) {
-    if (otherFrame) {
-      wanted++;
-      if (task == Task.REFINED || task == Task.MEASURE) {
-        cancelFrame();
-      }
-    }
-    lock.notifyAll();
-  }
-
-  /** With the lock: ends what the tracer does. */
-  private void cancelFrame() {
-    RayTracer now = tracer;
-    if (now != null && task != null && task != Task.OPEN) {
-      now.cancel();
-    }
-  }
-
-  /** With the lock: as {@link #cancelFrame}, and opening too. */
-  private void abandon() {
-    plan = null;
-    if (opening != null) {
-      opening.cancel();
-    }
-    cancelFrame();
-  }
-
-  private void tell() {
-    Runnable told;
-    synchronized (lock) {
-      told = listener;
-    }
-    if (told != null) {
-      told.run();
-    }
   }
 
   private void work() {
@@ -388,30 +85,6 @@ public final class RenderLoop {
         // Nobody interrupts this thread for a reason of ours; it goes on.
       }
     }
-  }
-
-  private @Nullable Task find() {
-    if (quit) {
-      return Task.QUIT;
-    } else if (close) {
-      return Task.CLOSE;
-    } else if (!running || failure != null) {
-      return null;
-    } else if (tracer == null || !scene.equals(openScene)) {
-      return Task.OPEN;
-    } else if (plan != null) {
-      return Task.BENCHMARK;
-    } else if (screen == null || screenWidth < 1 || screenHeight < 1) {
-      return null;
-    } else if (drawn != wanted) {
-      return moving || resolution.coarse() < 1 ? Task.COARSE : Task.REFINED;
-    } else if (!composed) {
-      return Task.COMPOSE;
-    } else if (!moving && info != null && !info.isRefined()) {
-      return Task.REFINED;
-    }
-    boolean rests = moving || ThermalPolicy.restsInBackground(thermalStatus);
-    return rests || measured == wanted ? null : Task.MEASURE;
   }
 
   /** Whether the loop goes on. */
@@ -687,7 +360,7 @@ public final class RenderLoop {
     }
     tell();
     on.setCamera(from);
-    String json =
+    Benchmark.Result result =
         Benchmark.run(
             on,
             what,
@@ -700,7 +373,7 @@ public final class RenderLoop {
     synchronized (lock) {
       if (plan == what) {
         plan = null;
-        benchmark = json;
+        benchmark = result;
       }
     }
   }

@@ -6,6 +6,7 @@ final class Resolution {
   /** What a frame may take while a finger moves. */
   static final double COARSE_MILLIS = 50;
 
+  private static final double STEPS = 16;
   private static final double LEAST_COARSE = 0.125;
   private static final double LEAST_MEMORY = 1.0 / 16;
 
@@ -19,7 +20,8 @@ final class Resolution {
 
   /** The share of a refined frame's sides that is drawn while a finger moves. */
   double coarse() {
-    return coarse;
+    // In steps, so that not every frame has a size of its own, and memory of its own with it.
+    return Math.max(LEAST_COARSE, Math.round(coarse * STEPS) / STEPS);
   }
 
   /** What memory leaves of the sides. */
@@ -44,5 +46,10 @@ final class Resolution {
     }
     memory /= 2;
     return true;
+  }
+
+  /** The user chose anew: memory is tried anew, too. */
+  void restore() {
+    memory = 1;
   }
 }

@@ -27,7 +27,7 @@ public final class State {
   private final @Nullable FrameInfo frame;
   private final @Nullable DeviceInfo device;
   private final @Nullable Failure failure;
-  private final @Nullable String benchmark;
+  private final Benchmark.@Nullable Result benchmark;
 
   State(
       Phase phase,
@@ -37,7 +37,7 @@ public final class State {
       @Nullable FrameInfo frame,
       @Nullable DeviceInfo device,
       @Nullable Failure failure,
-      @Nullable String benchmark) {
+      Benchmark.@Nullable Result benchmark) {
     this.phase = phase;
     this.progress = progress;
     this.scene = scene;
@@ -83,8 +83,8 @@ public final class State {
     return failure;
   }
 
-  /** JSON of a benchmark that came to its end and was not taken yet. */
-  public @Nullable String benchmark() {
+  /** The result of a benchmark that came to its end and was not taken yet. */
+  public Benchmark.@Nullable Result benchmark() {
     return benchmark;
   }
 }

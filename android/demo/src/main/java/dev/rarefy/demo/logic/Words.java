@@ -34,7 +34,12 @@ public interface Words {
     /** A sentence of the library. */
     DRIVER_CRASHED,
     /** A sentence of the library. */
-    DRIVER_FAILED
+    DRIVER_FAILED,
+    /** A method's name, milliseconds of full and of adaptive tracing, a factor, a share. */
+    BENCHMARK_ROW,
+    METHOD_BALANCED,
+    METHOD_FAST,
+    METHOD_PAPER
   }
 
   /** The sentence with these in it. */
