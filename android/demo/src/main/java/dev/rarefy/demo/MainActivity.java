@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 package dev.rarefy.demo;
 
+import android.annotation.SuppressLint;
 import android.app.Activity;
 import android.content.Intent;
 import android.net.Uri;
@@ -24,7 +25,7 @@ import org.jspecify.annotations.Nullable;
  */
 public final class MainActivity extends Activity implements SurfaceHolder.Callback, Panel.Listener {
   /** How long a frame stands before it is measured against full tracing. */
-  private static final long IDLE_MILLIS = 1500;
+  static volatile long idleMillis = 1500;
 
   private static final int BENCHMARK_FRAMES = 5;
 
@@ -75,7 +76,7 @@ public final class MainActivity extends Activity implements SurfaceHolder.Callba
     loop =
         kept instanceof RenderLoop
             ? (RenderLoop) kept
-            : new RenderLoop(new AppOpener(this), saved.scene, settings, saved.camera, IDLE_MILLIS);
+            : new RenderLoop(new AppOpener(this), saved.scene, settings, saved.camera, idleMillis);
     Texts texts = new Texts(getResources());
     panelView = findViewById(R.id.panel);
     panel = new Panel(panelView, texts, settings, loop.state().scene(), this);
@@ -94,6 +95,11 @@ public final class MainActivity extends Activity implements SurfaceHolder.Callba
     loop.setSettings(settings);
     loop.setListener(this::updateSoon);
     update();
+  }
+
+  /** What draws. */
+  RenderLoop loop() {
+    return loop;
   }
 
   private void buttons() {
@@ -220,6 +226,7 @@ public final class MainActivity extends Activity implements SurfaceHolder.Callba
 
   // Before Android 13; later ones ask Back.
   @Override
+  @SuppressLint("GestureBackNavigation") // Back does it on Android that does not call this.
   @SuppressWarnings("deprecation")
   public void onBackPressed() {
     if (panelView.getVisibility() == View.VISIBLE) {
