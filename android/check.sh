@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT OR Apache-2.0
 # Cross-compiles and links librarefy_jni.so for the Android ABIs without an NDK, checks what came out, runs it in a Java VM of each ABI
-# under qemu, and makes and checks the AAR.
+# under qemu, and makes and checks the AAR and the demo app.
 #
-#   android/check.sh               all checks; `--self-check` and `--aar` are part of it
+#   android/check.sh               all checks; `--self-check`, `--aar` and `--apk` are part of it
 #   android/check.sh --self-check  only: do the checks notice what they are there for? (seconds, no Rust)
 #   android/check.sh --aar         only: builds the AAR with its sources, documentation and POM, and has it consumed
+#   android/check.sh --apk         only: builds the demo app as a package (APK) and a bundle, checks them and prints what is in them
 #
 # How it works without an NDK: the linker gets stub libraries that define nothing but the symbols in stubs/*.txt, all of
 # which Android has had since API 21 (Android 5). With --no-undefined, whatever else the code needs is a link error, so
@@ -17,6 +18,8 @@ cd "$(dirname "$0")/.."
 . android/check/qemu.sh
 . android/check/java.sh
 . android/check/aar.sh
+. android/check/demo.sh
+. android/check/lint.sh
 
 api=21
 page=0x4000 # 16 KiB pages: required of new apps since November 2025; 4 KiB phones take them as well
@@ -252,6 +255,7 @@ case ${1-} in
     section "Android: the files in a Java VM of each ABI" run_files
     section "Android: Java" check_java
     section "Android: AAR" check_aar
+    section "Android: demo app" check_demo
     ;;
 --self-check) section "Android: self-check" self_check ;;
 --aar)
@@ -260,5 +264,11 @@ case ${1-} in
     section "Android: the Java library" java_library
     section "Android: AAR" check_aar
     ;;
-*) fail "usage: android/check.sh [--self-check | --aar]" ;;
+--apk)
+    need_rust_with_source "the Android check"
+    section "Android: build ($("$RUSTC" --version))" build
+    section "Android: the Java library" java_library
+    section "Android: demo app" check_demo
+    ;;
+*) fail "usage: android/check.sh [--self-check | --aar | --apk]" ;;
 esac

@@ -16,3 +16,4 @@ dependencyResolutionManagement {
 
 rootProject.name = "rarefy-android"
 include(":library")
+include(":demo")

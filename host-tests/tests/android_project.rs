@@ -39,7 +39,10 @@ fn gradle_says_what_the_scripts_and_the_code_say() {
         between(&gradle, "val abis = listOf(", ")").split(", ").map(|abi| abi.trim_matches('"')).collect();
     assert_eq!(listed.join(" "), between(&check, "\nabis=\"", "\""));
     assert!(root().join("android/library").join(between(&gradle, "consumerProguardFiles(\"", "\"")).is_file());
-    assert!(root().join("android").join(between(&text("android/settings.gradle.kts"), "include(\":", "\"")).is_dir());
+    for module in text("android/settings.gradle.kts").split("include(\":").skip(1) {
+        let folder = root().join("android").join(module.split_once('"').unwrap().0);
+        assert!(folder.join("build.gradle.kts").is_file(), "{}", folder.display());
+    }
     let package = between(&gradle, "\"-p\", \"", "\"");
     assert!(text("android/jni/Cargo.toml").contains(&format!("\nname = \"{package}\"\n")));
     let library = text("android/jni/Cargo.toml");
@@ -51,6 +54,26 @@ fn gradle_says_what_the_scripts_and_the_code_say() {
     assert!(
         java.contains(&format!("api_signature_artifact=android-api-level-{}\n", between(&aar, "\nmin_sdk=", "\n")))
     );
+}
+
+#[test]
+fn gradle_says_of_the_demo_app_what_its_script_says() {
+    let gradle = text("android/demo/build.gradle.kts");
+    let aar = text("android/check/aar.sh");
+    let demo = text("android/check/demo.sh");
+    let manifest = text("android/demo/src/main/AndroidManifest.xml");
+    let package = between(&demo, "\ndemo_package=", "\n");
+    assert_eq!(between(&gradle, "namespace = \"", "\""), package);
+    assert_eq!(between(&gradle, "applicationId = \"", "\""), package);
+    assert_eq!(between(&manifest, "package=\"", "\""), package);
+    assert_eq!(between(&gradle, "versionName = \"", "\""), env!("CARGO_PKG_VERSION"));
+    assert_eq!(between(&gradle, "versionCode = ", "\n"), between(&demo, "\ndemo_version_code=", "\n"));
+    assert_eq!(between(&gradle, "minSdk = ", "\n"), between(&aar, "\nmin_sdk=", "\n"));
+    assert_eq!(between(&gradle, "targetSdk = ", "\n"), between(&aar, "\ntarget_sdk=", "\n"));
+    // Lint and Gradle take the same file, and the same plug-in builds library and app.
+    assert!(demo.contains("check_lint") && text("android/check/lint.sh").contains(between(&gradle, "file(\"", "\"")));
+    let plugin = |gradle: &str| between(gradle, ") version \"", "\"").to_owned();
+    assert_eq!(plugin(&gradle), plugin(&text("android/library/build.gradle.kts")));
 }
 
 /// The names in brackets of a Java enum's constants.
