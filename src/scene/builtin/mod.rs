@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Scenes of our own, made by deterministic code: a café to look at, and four tiny scenes for tests.
+//! Scenes of our own, made by deterministic code: a café and a kitchen to look at, and four tiny scenes for tests.
 //!
 //! Each scene has a folder `scenes/NAME` with its `view.json` and the parameters of its generator; both are part of
 //! the library. The generators use `+ - * /` and square roots alone, so that every platform makes the same bytes.
@@ -7,9 +7,11 @@
 pub mod cafe;
 mod convert;
 mod export;
+pub mod kitchen;
 pub mod mesh;
 mod model;
 pub mod paint;
+pub mod parts;
 pub mod tiny;
 
 use std::path::Path;
@@ -23,7 +25,7 @@ use crate::error::Setting;
 use crate::{Error, Result, Scene};
 
 /// The names of all built-in scenes.
-pub const NAMES: [&str; 5] = ["cafe", "wall", "spheres", "rods", "mirror-room"];
+pub const NAMES: [&str; 6] = ["cafe", "kitchen", "wall", "spheres", "rods", "mirror-room"];
 
 /// Makes a built-in scene.
 ///
@@ -34,6 +36,10 @@ pub fn generate(name: &str) -> Result<Model> {
         "cafe" => cafe::generate(
             &parameters(name, include_str!("../../../scenes/cafe/parameters.json"))?,
             include_str!("../../../scenes/cafe/view.json"),
+        )?,
+        "kitchen" => kitchen::generate(
+            &parameters(name, include_str!("../../../scenes/kitchen/parameters.json"))?,
+            include_str!("../../../scenes/kitchen/view.json"),
         )?,
         "wall" => tiny::wall(
             &parameters(name, include_str!("../../../scenes/wall/parameters.json"))?,
@@ -97,36 +103,63 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
 
-    const CAFE: &str = include_str!("../../../scenes/cafe/parameters.json");
-
-    /// What the café's generator says about parameters in which `from` is replaced by `to`.
-    fn changed(from: &str, to: &str) -> Result<Model> {
-        assert!(CAFE.contains(from), "{from}");
-        cafe::generate(&parameters("cafe", &CAFE.replace(from, to))?, "{}")?.finish()
+    /// What a scene's generator says about parameters in which `from` is replaced by `to`.
+    fn changed(scene: &str, from: &str, to: &str) -> Result<Model> {
+        let text = match scene {
+            "cafe" => include_str!("../../../scenes/cafe/parameters.json"),
+            _ => include_str!("../../../scenes/kitchen/parameters.json"),
+        };
+        assert!(text.contains(from), "{from}");
+        let text = text.replace(from, to);
+        let model = match scene {
+            "cafe" => cafe::generate(&parameters(scene, &text)?, "{}"),
+            _ => kitchen::generate(&parameters(scene, &text)?, "{}"),
+        };
+        model?.finish()
     }
 
     #[test]
     fn parameters_out_of_range_are_refused_with_key_and_range() {
-        assert!(changed("\"seed\": 2016", "\"seed\": 1").is_ok());
-        for (from, to, expected) in [
+        for scene in ["cafe", "kitchen"] {
+            assert!(changed(scene, "\"seed\": 2016", "\"seed\": 1").is_ok());
+        }
+        let cafe = [
             ("\"tube_radius\": 0.0145", "\"tube_radius\": 0.5", "`chair.tube_radius` is 0.5; it must lie between"),
             ("\"leaves\": 34", "\"leaves\": 1000000", "`leaves`"),
             ("\"texture\": 512", "\"texture\": 100000", "`texture`"),
             ("\"radius\": 0.38", "\"radius\": -1", "`tables.radius`"),
             ("\"seed\": 2016", "\"sead\": 2016", "scenes/cafe/parameters.json:2: unknown field `sead`"),
             ("\"leaves\": 34", "\"leaves\": -1", "scenes/cafe/parameters.json:"),
-        ] {
-            let message = changed(from, to).unwrap_err().to_string();
-            assert!(message.contains(expected), "{message}");
+        ];
+        let kitchen = [
+            ("\"wall_tile\": 0.12", "\"wall_tile\": 0", "`wall_tile` is 0; it must lie between"),
+            ("\"sill\": 1.10", "\"sill\": 0.5", "`window.sill` is 0.5"),
+            ("\"head\": 2.12", "\"head\": 2.65", "`window.head` is 2.65"),
+            ("\"size\": [1.5, 0.86]", "\"size\": [1.5, 4]", "`table.size` is 4"),
+            ("\"jars\": 9", "\"jars\": 0", "`jars` is 0"),
+            ("\"turns\": 0.48", "\"turns\": 1e9", "`chairs.turns`"),
+            ("\"at\": [-0.25, 1.75, 0.75]", "\"at\": [-0.25, 2.65, 0.75]", "`lamps.at` is 2.65"),
+            ("\"spices\"", "\"spice\"", "unknown field `spice`"),
+        ];
+        for (scene, cases) in [("cafe", cafe.as_slice()), ("kitchen", kitchen.as_slice())] {
+            for (from, to, expected) in cases {
+                let message = changed(scene, from, to).unwrap_err().to_string();
+                assert!(message.contains(expected), "{message}");
+            }
         }
     }
 
     #[test]
     fn other_parameters_and_seeds_make_other_scenes() {
-        let base = changed("\"seed\": 2016", "\"seed\": 2016").unwrap();
-        let other = changed("\"seed\": 2016", "\"seed\": 2017").unwrap();
-        assert!(base.groups != other.groups && base.textures != other.textures);
-        let finer = changed("\"glass_sides\": 21", "\"glass_sides\": 42").unwrap();
-        assert!(finer.triangle_count() > base.triangle_count());
+        for (scene, from, to) in [
+            ("cafe", "\"glass_sides\": 21", "\"glass_sides\": 42"),
+            ("kitchen", "\"small_sides\": 14", "\"small_sides\": 28"),
+        ] {
+            let base = changed(scene, "\"seed\": 2016", "\"seed\": 2016").unwrap();
+            let other = changed(scene, "\"seed\": 2016", "\"seed\": 2017").unwrap();
+            assert!(base.groups != other.groups && base.textures != other.textures);
+            let finer = changed(scene, from, to).unwrap();
+            assert!(finer.triangle_count() > base.triangle_count());
+        }
     }
 }

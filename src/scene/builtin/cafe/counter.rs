@@ -3,10 +3,10 @@
 
 use glam::{Vec2, Vec3};
 
-use super::tableware::{cup, plate};
 use super::{Parameters, at};
 use crate::scene::builtin::mesh::{Mesh, Random, cos_sin, ring_path, smooth_path};
 use crate::scene::builtin::model::Model;
+use crate::scene::builtin::parts::crockery::{bottle, cup, plate};
 
 /// Left and right end of the counter.
 const ENDS: [f32; 2] = [-2.05, 0.72];
@@ -319,17 +319,7 @@ fn shelves(model: &mut Model, p: &Parameters) {
         let place = at(x, heights[1], back + 0.12 + random.range(-0.02, 0.03));
         let kind = glass[(random.range(0.0, 4.0) as usize).min(3)];
         let (shoulder, neck) = (tall * random.range(0.52, 0.62), r * 0.34);
-        let profile = [
-            (r, 0.0),
-            (r, shoulder),
-            (r * 0.85, shoulder + 0.03),
-            (neck, shoulder + 0.07),
-            (neck, tall - 0.02),
-            (neck * 1.25, tall - 0.018),
-            (neck * 1.25, tall),
-            (0.0, tall),
-        ];
-        model.add(format!("bottle-{}", i + 1), kind, Mesh::lathe(&profile, p.bottle_sides).moved(place));
+        model.add(format!("bottle-{}", i + 1), kind, bottle(r, shoulder, neck, tall, p.bottle_sides).moved(place));
         let band = Mesh::lathe(&[(r + 0.001, shoulder * 0.28), (r + 0.001, shoulder * 0.82)], p.bottle_sides);
         model.add(format!("label-{}", i + 1), "label", band.with_texture_scale(Vec2::new(2.0, 1.0)).moved(place));
     }

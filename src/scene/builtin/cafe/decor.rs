@@ -4,8 +4,10 @@
 use glam::{Vec2, Vec3};
 
 use super::{Parameters, at};
-use crate::scene::builtin::mesh::{Mesh, Random, cos_sin, smooth_path};
+use crate::scene::builtin::mesh::Mesh;
 use crate::scene::builtin::model::Model;
+use crate::scene::builtin::parts::plants::slit_leaved;
+use crate::scene::builtin::parts::walls::framed;
 
 /// Adds the decoration.
 pub fn add(model: &mut Model, p: &Parameters) {
@@ -27,21 +29,6 @@ pub fn add(model: &mut Model, p: &Parameters) {
     side_picture(model, p);
     clock(model, at(1.33, 2.55, back));
     plant(model, at(-2.75, 0.0, -2.05), p);
-}
-
-/// A flat thing in a frame on the back wall: its materials, middle, half size and the frame's width.
-fn framed(model: &mut Model, name: &str, materials: (&str, &str), middle: Vec3, half: Vec2, width: f32) {
-    let (w, h) = (half.x, half.y);
-    let p = |x: f32, y: f32| middle + at(x, y, 0.012);
-    model.add(name, materials.0, Mesh::quad([p(-w, -h), p(w, -h), p(w, h), p(-w, h)], Vec2::ONE));
-    let bar = |x0: f32, y0: f32, x1: f32, y1: f32| {
-        Mesh::rounded_block(middle + at(x0, y0, 0.001), middle + at(x1, y1, 0.035), width * 0.2)
-    };
-    let mut frame = bar(-w - width, -h - width, w + width, -h);
-    frame.append(&bar(-w - width, h, w + width, h + width));
-    frame.append(&bar(-w - width, -h, -w, h));
-    frame.append(&bar(w, -h, w + width, h));
-    model.add(format!("{name}-frame"), materials.1, frame);
 }
 
 /// A picture on the left wall, between the window and the corner.
@@ -80,32 +67,7 @@ fn plant(model: &mut Model, place: Vec3, p: &Parameters) {
     model.add("plant-pot", "terracotta", Mesh::lathe(&pot, 18).moved(place));
     let soil = Mesh::lathe(&[(0.166, 0.316), (0.0, 0.325)], 16);
     model.add("plant-soil", "soil", soil.moved(place));
-    let mut random = Random::new(p.seed.wrapping_add(77));
-    let mut stems = Mesh::default();
-    let mut leaves = Mesh::default();
-    for i in 0..p.leaves {
-        let t = (i as f32 + 0.5) / p.leaves as f32;
-        // The golden angle spreads the leaves evenly around.
-        let (c, s) = cos_sin(0.381_966 * i as f32 + random.range(-0.03, 0.03));
-        let reach = (0.14 + 0.30 * (1.0 - t) + 0.10 * t) * random.range(0.8, 1.15);
-        let high = 0.45 + 1.05 * t + random.range(-0.05, 0.05);
-        let tip = at(c * reach, high, -s * reach);
-        let stem =
-            [at(c * 0.03, 0.31, -s * 0.03), at(c * reach * 0.35, 0.31 + (high - 0.31) * 0.7, -s * reach * 0.35), tip];
-        stems.append(&Mesh::tube(&smooth_path(&stem, 2, false), 0.0045, 3, false));
-        let (long, wide) = (random.range(0.24, 0.34), random.range(0.19, 0.25));
-        let (rise, droop) = (random.range(0.02, 0.30) * (0.3 + t), random.range(0.25, 0.6));
-        let roll = random.range(-0.35, 0.35);
-        let outwards = at(c, 0.0, -s);
-        let across = at(s, roll, c).normalize();
-        let leaf = Mesh::sheet(2, 4, |u, v| {
-            let side = (u - 0.5) * wide;
-            let fold = (u - 0.5).abs() * 0.25 * wide;
-            let along = v * long;
-            tip + across * side + outwards * along + at(0.0, rise * v - droop * long * v * v + fold, 0.0)
-        });
-        leaves.append(&leaf);
-    }
+    let (stems, leaves) = slit_leaved(p.leaves, p.seed);
     model.add("plant-stems", "stem", stems.moved(place));
     model.add("plant-leaves", "leaf", leaves.moved(place));
 }

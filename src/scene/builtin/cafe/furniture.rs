@@ -3,9 +3,10 @@
 
 use glam::Vec3;
 
-use super::{Chair, Lamp, Parameters, at};
-use crate::scene::builtin::mesh::{Mesh, cos_sin, ring_path, smooth_path};
+use super::{Chair, Parameters, at};
+use crate::scene::builtin::mesh::{Mesh, ring_path, smooth_path};
 use crate::scene::builtin::model::Model;
+use crate::scene::builtin::parts::lamps;
 
 /// Height of a table's top.
 pub const TABLE_HEIGHT: f32 = 0.74;
@@ -33,7 +34,7 @@ pub fn add(model: &mut Model, p: &Parameters) {
         model.add(format!("chair-{}-seat", i + 1), "cane", put(&seat));
     }
     for (i, lamp) in p.lamps.iter().enumerate() {
-        add_lamp(model, i + 1, lamp, p.room.height, p.lamp_sides);
+        lamps::pendant(model, i + 1, lamp, "green-enamel", p.room.height, p.lamp_sides);
     }
 }
 
@@ -123,35 +124,4 @@ fn chair_seat(c: &Chair) -> Mesh {
     let (s, w) = (c.seat_height, c.seat_radius);
     let profile = [(w * 0.82, s - 0.026), (w * 0.83, s - 0.006), (0.0, s - 0.011)];
     Mesh::lathe(&profile, c.seat_sides).with_plan_texture(12.0)
-}
-
-/// A conical shade with a cord, a cap and a bulb; the light itself is in `view.json`.
-fn add_lamp(model: &mut Model, n: usize, lamp: &Lamp, ceiling: f32, sides: u32) {
-    let place = Vec3::from(lamp.at);
-    let r = lamp.radius;
-    let h = r * 0.95;
-    let outside = Mesh::lathe(&[(r, 0.0), (r * 1.015, 0.010), (r * 0.28, h * 0.86), (r * 0.20, h)], sides);
-    let inside =
-        Mesh::lathe(&[(r * 0.18, h - 0.004), (r * 0.26, h * 0.86 - 0.004), (r * 0.99, 0.008), (r, 0.0)], sides);
-    model.add(format!("lamp-{n}-shade"), "green-enamel", outside.moved(place));
-    model.add(format!("lamp-{n}-inside"), "shade-inside", inside.moved(place));
-    let cap = Mesh::lathe(
-        &[
-            (r * 0.20, h - 0.002),
-            (r * 0.21, h + 0.012),
-            (r * 0.14, h + 0.035),
-            (r * 0.13, h + 0.06),
-            (0.008, h + 0.085),
-        ],
-        sides.min(10),
-    );
-    model.add(format!("lamp-{n}-cap"), "brass", cap.moved(place));
-    let cord = Mesh::tube(&[place + at(0.0, h + 0.07, 0.0), at(place.x, ceiling, place.z)], 0.006, 6, false);
-    let rose = Mesh::lathe(&[(0.012, -0.03), (0.05, -0.012), (0.055, 0.0)], 10).moved(at(place.x, ceiling, place.z));
-    model.add(format!("lamp-{n}-cord"), "iron", cord.and(rose));
-    let (_, waist) = cos_sin(0.1);
-    let b = 0.034;
-    let bulb =
-        [(0.0, -b), (b * waist, -b * 0.80), (b, 0.0), (b * 0.8, b * 0.75), (b * 0.42, b * 1.6), (b * 0.40, b * 2.6)];
-    model.add(format!("lamp-{n}-bulb"), "bulb", Mesh::lathe(&bulb, 10).moved(place + at(0.0, 0.055, 0.0)));
 }

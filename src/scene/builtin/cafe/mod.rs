@@ -11,11 +11,10 @@ mod room;
 mod surfaces;
 mod tableware;
 
-use glam::Vec3;
-
-pub use parameters::{Chair, ChairPlace, Lamp, Parameters, Room, Table, Window};
+pub use parameters::{Chair, Parameters, Room, Table, Window};
 
 use super::model::Model;
+use super::parts::at;
 use crate::Result;
 
 /// Makes the café.
@@ -32,9 +31,4 @@ pub fn generate(p: &Parameters, view: &'static str) -> Result<Model> {
     tableware::add(&mut model, p);
     decor::add(&mut model, p);
     Ok(model)
-}
-
-/// A point.
-const fn at(x: f32, y: f32, z: f32) -> Vec3 {
-    Vec3::new(x, y, z)
 }

@@ -4,6 +4,8 @@
 use serde::Deserialize;
 
 use crate::scene::builtin::check;
+use crate::scene::builtin::parts::furniture::ChairPlace;
+use crate::scene::builtin::parts::lamps::Lamp;
 use crate::{Error, Result};
 
 /// All parameters of the café; lengths are metres, angles whole turns.
@@ -94,16 +96,6 @@ pub struct Table {
     pub radius: f32,
 }
 
-/// Where a chair stands.
-#[derive(Debug, Clone, Copy, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ChairPlace {
-    /// x and z of its seat's middle.
-    pub at: [f32; 2],
-    /// How far it is turned about the y axis; at 0 who sits on it looks to +z.
-    pub turns: f32,
-}
-
 /// What each chair is like.
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -122,16 +114,6 @@ pub struct Chair {
     pub steps: u32,
     /// Sides of the seat.
     pub seat_sides: u32,
-}
-
-/// A pendant lamp.
-#[derive(Debug, Clone, Copy, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Lamp {
-    /// Middle of the shade's lower opening.
-    pub at: [f32; 3],
-    /// Radius of the shade's lower opening.
-    pub radius: f32,
 }
 
 impl Parameters {

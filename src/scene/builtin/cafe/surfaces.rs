@@ -2,9 +2,9 @@
 //! The café's materials and the pictures on them.
 
 use super::Parameters;
-use crate::scene::Surface;
 use crate::scene::builtin::model::{Finish, Model};
 use crate::scene::builtin::paint::{Canvas, Colour, clouds, mix, noise, ramp, shade};
+use crate::scene::builtin::parts::{finishes, pictures};
 
 /// Adds all materials and pictures.
 pub fn add(model: &mut Model, p: &Parameters) {
@@ -20,23 +20,23 @@ pub fn add(model: &mut Model, p: &Parameters) {
         Finish::glossy("bentwood", [0.16, 0.055, 0.025], 0.35, 90.0),
         Finish::glossy("cane", white, 0.02, 10.0).with_texture("cane.png"),
         Finish::glossy("marble", white, 0.25, 160.0).with_texture("marble.png"),
-        Finish::glossy("iron", [0.025, 0.025, 0.028], 0.30, 60.0),
-        Finish::mirror("chrome", [0.20, 0.20, 0.21], [0.62, 0.62, 0.63]),
-        Finish::mirror("brass", [0.55, 0.33, 0.09], [0.50, 0.36, 0.15]),
-        Finish::mirror("mirror", [0.02; 3], [0.90, 0.92, 0.91]),
+        finishes::iron(),
+        finishes::chrome(),
+        finishes::brass(),
+        finishes::mirror(),
         Finish::glossy("gilding", [0.60, 0.40, 0.12], 0.5, 50.0),
         Finish::glossy("red-enamel", [0.52, 0.035, 0.025], 0.5, 180.0),
         Finish::glossy("green-enamel", [0.03, 0.16, 0.12], 0.5, 160.0),
-        Finish::matte("shade-inside", [0.88, 0.84, 0.74]),
-        Finish::matte("bulb", [1.0, 0.93, 0.78]),
+        finishes::shade_inside(),
+        finishes::bulb(),
         Finish::glossy("black-plastic", [0.02, 0.02, 0.02], 0.25, 60.0),
-        Finish::glossy("porcelain", [0.85, 0.84, 0.81], 0.45, 220.0),
+        finishes::porcelain(),
         Finish::glossy("coffee", [0.45, 0.25, 0.11], 0.10, 80.0),
-        Finish::glass("glass", Surface::Glass, [0.985, 0.995, 0.99]),
-        Finish { index_of_refraction: 1.45, ..Finish::glass("pane", Surface::ThinGlass, [0.98, 0.99, 0.985]) },
+        finishes::glass(),
+        finishes::pane(),
         Finish::glossy("juice", [0.90, 0.36, 0.03], 0.1, 60.0),
         Finish::glossy("tea", [0.45, 0.035, 0.05], 0.1, 60.0),
-        Finish::glossy("crust", [0.62, 0.31, 0.085], 0.18, 30.0),
+        finishes::crust(),
         Finish::glossy("chocolate", [0.11, 0.042, 0.020], 0.25, 50.0),
         Finish::matte("cream", [0.86, 0.79, 0.66]),
         Finish::glossy("cherry", [0.55, 0.015, 0.03], 0.6, 120.0),
@@ -44,7 +44,7 @@ pub fn add(model: &mut Model, p: &Parameters) {
         Finish::matte("terracotta", [0.50, 0.20, 0.10]),
         Finish::matte("soil", [0.06, 0.04, 0.025]),
         Finish::glossy("leaf", white, 0.08, 30.0).with_texture("leaf.png").with_mask("leaf_mask.png"),
-        Finish::matte("stem", [0.12, 0.20, 0.06]),
+        finishes::stem(),
         Finish::matte("chalkboard", white).with_texture("menu.png"),
         Finish::matte("painting", white).with_texture("painting.png"),
         Finish::matte("clock-face", white).with_texture("clock.png"),
@@ -66,17 +66,17 @@ pub fn add(model: &mut Model, p: &Parameters) {
     let seed = p.seed;
     model.add_picture("floor.png", floor(s, seed));
     model.add_picture("boards.png", boards(s / 2, seed));
-    model.add_picture("oak.png", oak(s / 2, seed));
+    model.add_picture("oak.png", pictures::oak(s / 2, seed));
     model.add_picture("cane.png", cane(s / 8));
-    model.add_picture("marble.png", marble(s / 2, seed));
-    let [leaf, mask] = leaf(s / 4);
+    model.add_picture("marble.png", pictures::marble(s / 2, seed));
+    let [leaf, mask] = pictures::leaf(s / 4);
     model.add_picture("leaf.png", leaf);
     model.add_picture("leaf_mask.png", mask);
     model.add_picture("menu.png", menu(s, seed));
-    model.add_picture("painting.png", painting(s / 2, seed));
-    model.add_picture("clock.png", clock(s / 4));
+    model.add_picture("painting.png", pictures::painting(s / 2, seed));
+    model.add_picture("clock.png", pictures::clock(s / 4));
     model.add_picture("street.png", street(s, seed));
-    model.add_picture("label.png", label(s / 8));
+    model.add_picture("label.png", pictures::label(s / 8));
 }
 
 /// Four tiles, two light and two dark, as checks; repeats at the borders.
@@ -110,20 +110,6 @@ fn boards(size: u32, seed: u32) -> Canvas {
     })
 }
 
-/// Planks of oak along u; four planks a repeat.
-fn oak(size: u32, seed: u32) -> Canvas {
-    Canvas::new(size, size, |u, v| {
-        let plank = (v * 4.0).floor();
-        let y = v * 4.0 - plank;
-        let bend = 0.10 * noise(u * 3.0, plank * 5.0, 16, seed + 4);
-        let rings = noise(u * 2.0, (v + bend * 0.25) * 64.0, 64, seed + 5);
-        let grain = noise(u * 16.0, v * 128.0, 128, seed + 6);
-        let tone = 0.86 + 0.26 * noise(plank * 3.0, 1.0, 16, seed + 7);
-        let wood = mix([0.50, 0.33, 0.19], [0.74, 0.55, 0.35], 0.6 * rings + 0.4 * grain);
-        shade(wood, tone * (0.75 + 0.25 * ramp(0.0, 0.03, y.min(1.0 - y))))
-    })
-}
-
 /// Woven cane: light strips with dark gaps.
 fn cane(size: u32) -> Canvas {
     Canvas::new(size, size, |u, v| {
@@ -134,45 +120,6 @@ fn cane(size: u32) -> Canvas {
         let (a, b) = (strip(u), strip(v));
         mix([0.28, 0.17, 0.08], mix([0.80, 0.63, 0.38], [0.88, 0.73, 0.48], a), a.max(b))
     })
-}
-
-/// White marble with grey veins.
-fn marble(size: u32, seed: u32) -> Canvas {
-    Canvas::new(size, size, |u, v| {
-        let warp = clouds(u, v, 3, seed + 8);
-        let fold = (clouds(u + 0.3 * warp, v + 0.2 * warp, 3, seed + 9) - 0.5).abs();
-        let thin = (clouds(u - 0.2 * warp, v + 0.4 * warp, 5, seed + 10) - 0.5).abs();
-        let vein = (1.0 - ramp(0.0, 0.07, fold)) * 0.55 + (1.0 - ramp(0.0, 0.03, thin)) * 0.30;
-        mix(shade([0.93, 0.92, 0.90], 0.95 + 0.06 * warp), [0.52, 0.53, 0.56], vein)
-    })
-}
-
-/// A leaf with veins, and the mask that cuts it out. The stalk is below.
-fn leaf(size: u32) -> [Canvas; 2] {
-    // Half the width of the leaf at height h above the stalk, both in parts of the picture.
-    let half_width = |h: f32| {
-        let t = h.clamp(0.0, 1.0);
-        0.95 * t * (1.0 - t) * (2.2 - 1.3 * t)
-    };
-    let colour = Canvas::new(size, size * 2, |u, v| {
-        let h = 1.0 - v;
-        let x = (u - 0.5).abs();
-        let f = (h - x * 0.55) * 9.0;
-        let side = f - f.floor();
-        let vein = (1.0 - ramp(0.010, 0.030, x)).max(0.55 * (1.0 - ramp(0.04, 0.14, side.min(1.0 - side))));
-        let green = mix([0.13, 0.36, 0.14], [0.30, 0.56, 0.20], h * 0.6 + x);
-        mix(green, [0.58, 0.74, 0.36], vein)
-    });
-    let mask = Canvas::new(size, size * 2, |u, v| {
-        let h = 1.0 - v;
-        let x = (u - 0.5).abs();
-        // Deep slits between the side veins, as a Swiss cheese plant has.
-        let f = (h - x * 0.55) * 4.5 + 0.5;
-        let side = f - f.floor();
-        let slit = x > 0.17 && h > 0.18 && h < 0.86 && (side - 0.5).abs() < 0.10;
-        if x < half_width(h) && !slit { [1.0; 3] } else { [0.0; 3] }
-    });
-    [colour, mask]
 }
 
 const CHALK: Colour = [0.93, 0.92, 0.86];
@@ -227,53 +174,6 @@ fn menu(size: u32, seed: u32) -> Canvas {
     c
 }
 
-/// A landscape: a low sun over hills and water.
-fn painting(size: u32, seed: u32) -> Canvas {
-    Canvas::new(size, size * 3 / 4, |u, v| {
-        let stroke = clouds(u, v, 12, seed + 13) - 0.5;
-        let mut c = mix([0.26, 0.45, 0.62], [0.97, 0.76, 0.48], ramp(0.0, 0.55, v + 0.10 * stroke));
-        let (dx, dy) = ((u - 0.66) * 4.0 / 3.0, v - 0.36);
-        let sun = (dx * dx + dy * dy).sqrt();
-        c = mix([1.0, 0.93, 0.68], c, ramp(0.085, 0.11, sun + 0.02 * stroke));
-        let far = 0.50 - 0.10 * noise(u * 4.0, 0.5, 4, seed + 14);
-        let near = 0.66 - 0.16 * noise(u * 3.0 + 0.7, 1.5, 3, seed + 15);
-        if v > far {
-            c = mix([0.40, 0.44, 0.58], [0.52, 0.50, 0.56], stroke + 0.5);
-        }
-        if v > near {
-            c = mix([0.18, 0.32, 0.20], [0.42, 0.50, 0.20], stroke + 0.6 - (v - near));
-        }
-        if v > 0.80 {
-            let glitter = noise(u * 14.0, v * 60.0, 60, seed + 16);
-            c = mix(
-                [0.16, 0.30, 0.42],
-                [0.95, 0.74, 0.50],
-                ramp(0.55, 0.8, glitter) * (1.0 - ramp(0.05, 0.35, (u - 0.66).abs())),
-            );
-        }
-        shade(c, 0.94 + 0.2 * stroke)
-    })
-}
-
-/// A clock's face at ten past ten.
-fn clock(size: u32) -> Canvas {
-    let mut c = Canvas::new(size, size, |_, _| [0.94, 0.92, 0.86]);
-    let ink = [0.08, 0.07, 0.07];
-    let spot = |turns: f32, r: f32| {
-        let (x, y) = crate::scene::builtin::mesh::cos_sin(0.25 - turns);
-        (0.5 + x * r, 0.5 - y * r)
-    };
-    for hour in 0..12 {
-        let t = hour as f32 / 12.0;
-        let long = hour % 3 == 0;
-        c.line(spot(t, if long { 0.34 } else { 0.38 }), spot(t, 0.43), if long { 0.035 } else { 0.02 }, ink, 0.0);
-    }
-    c.line((0.5, 0.5), spot(10.17 / 12.0, 0.23), 0.045, ink, 0.0);
-    c.line(spot(10.0 / 60.0, -0.06), spot(10.0 / 60.0, 0.36), 0.03, ink, 0.0);
-    c.line(spot(0.55, -0.05), spot(0.55, 0.36), 0.012, [0.7, 0.1, 0.08], 0.0);
-    c
-}
-
 /// House fronts across the street under a light sky.
 fn street(size: u32, seed: u32) -> Canvas {
     Canvas::new(size, size / 2, |u, v| {
@@ -313,18 +213,4 @@ fn street(size: u32, seed: u32) -> Canvas {
         }
         wall
     })
-}
-
-/// A bottle's label.
-fn label(size: u32) -> Canvas {
-    let mut c = Canvas::new(size, size, |_, v| {
-        let stripe = (v - 0.5).abs();
-        if stripe > 0.42 { [0.72, 0.55, 0.22] } else { [0.93, 0.89, 0.77] }
-    });
-    for (row, width) in [(0.33, 0.5), (0.5, 0.7), (0.66, 0.4)] {
-        for u in [0.25, 0.75] {
-            c.line((u - width * 0.22, row), (u + width * 0.22, row), 0.05, [0.25, 0.12, 0.10], 0.0);
-        }
-    }
-    c
 }

@@ -7,6 +7,8 @@ use super::furniture::TABLE_HEIGHT;
 use super::{Parameters, at};
 use crate::scene::builtin::mesh::{Mesh, cos_sin, smooth_path};
 use crate::scene::builtin::model::Model;
+use crate::scene::builtin::parts::crockery::{cup, plate, tumbler};
+use crate::scene::builtin::parts::food::croissant;
 
 /// Adds the tableware: the first table is laid, the others bear a cup each.
 pub fn add(model: &mut Model, p: &Parameters) {
@@ -33,27 +35,6 @@ pub fn add(model: &mut Model, p: &Parameters) {
         model.add("read-book-cover", "book-red", cover.and(lid).turned_y(0.06).moved(place));
         model.add("read-book-pages", "paper", pages.turned_y(0.06).moved(place));
     }
-}
-
-/// A cup with a handle at +x; its foot stands on the origin. 62 mm high.
-pub fn cup(sides: u32) -> Mesh {
-    let profile =
-        [(0.0, 0.0), (0.022, 0.0), (0.036, 0.026), (0.041, 0.060), (0.038, 0.062), (0.032, 0.026), (0.0, 0.010)];
-    let handle = [
-        at(0.035, 0.05, 0.0),
-        at(0.055, 0.052, 0.0),
-        at(0.060, 0.036, 0.0),
-        at(0.048, 0.022, 0.0),
-        at(0.032, 0.018, 0.0),
-    ];
-    Mesh::lathe(&profile, sides).and(Mesh::tube(&smooth_path(&handle, 2, false), 0.0045, 5, false))
-}
-
-/// A plate on the origin.
-pub fn plate(radius: f32, sides: u32) -> Mesh {
-    let r = radius;
-    let profile = [(r * 0.6, 0.0), (r, 0.015), (r * 0.99, 0.018), (r * 0.66, 0.010), (0.0, 0.009)];
-    Mesh::lathe(&profile, sides)
 }
 
 /// A cup of coffee with its saucer and spoon.
@@ -102,41 +83,12 @@ fn juice(model: &mut Model, place: Vec3, sides: u32) {
     let (low, high, tall) = (0.028, 0.037, 0.125);
     let wall = |y: f32| low + (high - low) * y / tall;
     let t = 0.0025;
-    let profile = [
-        (0.0, 0.0),
-        (low - 0.002, 0.0),
-        (wall(0.002), 0.002),
-        (wall(tall - 0.002), tall - 0.002),
-        (high - 0.5 * t, tall),
-        (wall(tall - 0.002) - t, tall - 0.002),
-        (wall(0.012) - t, 0.012),
-        (wall(0.010) - t - 0.002, 0.010),
-        (0.0, 0.010),
-    ];
-    model.add("tumbler", "glass", Mesh::lathe(&profile, sides).moved(place));
+    model.add("tumbler", "glass", tumbler(low, high, tall, t, sides).moved(place));
     let gap = 0.5 * t;
     let drink = [(0.0, 0.005), (wall(0.005) - gap, 0.005), (wall(0.092) - gap, 0.092), (0.0, 0.092)];
     model.add("juice", "juice", Mesh::lathe(&drink, sides).moved(place));
     let straw = Mesh::tube(&[at(0.012, 0.093, 0.004), at(-0.030, 0.185, -0.010)], 0.0032, 8, false);
     model.add("straw", "berry", straw.moved(place));
-}
-
-/// A croissant: a bent, ridged spindle.
-fn croissant() -> Mesh {
-    let rows = 21;
-    let path: Vec<Vec3> = (0..=rows)
-        .map(|i| {
-            let (c, s) = cos_sin(-0.06 + 0.62 * i as f32 / rows as f32);
-            at(c * 0.058, 0.0, 0.012 - s * 0.046)
-        })
-        .collect();
-    // Seven ridges, thickest in the middle.
-    let radius = |t: f32| {
-        let spindle = 4.0 * t * (1.0 - t);
-        let f = t * 7.0 - (t * 7.0).floor();
-        0.005 + 0.024 * spindle * (0.72 + 1.1 * f * (1.0 - f))
-    };
-    Mesh::tapered_tube(&path, radius, 10, false).stretched(at(1.0, 0.85, 1.0)).moved(at(0.0, 0.018, 0.0))
 }
 
 /// A small vase with three roses.
