@@ -83,6 +83,7 @@ static uint probe_material(__global uint *out, uint n) {
   AT(specular);
   AT(reflectance);
   AT(transmission);
+  AT(emission);
   AT(surface);
   AT(diffuse_texture);
   AT(cutout_texture);

@@ -85,6 +85,7 @@ typedef struct {
   float4 specular;      // rgb: Ks; w: index of refraction
   float4 reflectance;   // rgb: weight of a mirror's reflection; w: weight of the surface's own colour
   float4 transmission;  // rgb: Tf; w unused
+  float4 emission;      // rgb: Ke, light that the surface sends of its own; w unused
   uint surface;         // SURFACE_*
   uint diffuse_texture; // index, or NO_TEXTURE
   uint cutout_texture;  // index, or NO_TEXTURE

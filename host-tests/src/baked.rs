@@ -124,7 +124,7 @@ pub fn parts(bytes: &[u8]) -> Vec<Span> {
         (4, count(3)),
         (48, count(4)),
         (48, count(4)),
-        (80, count(5)),
+        (96, count(5)),
         (4, count(6)),
         (16, count(7)),
         (4, count(8)),

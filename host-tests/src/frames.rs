@@ -223,8 +223,8 @@ pub fn window(middle: f32) -> Scene {
 }
 
 /// The built-in spheres with everything else that a kernel can meet: the clay sphere full of holes, its floor there
-/// twice (two objects, equal distances), a sphere of thin glass, a sheet of two sides with glass in its plane, and shadow
-/// bits of three lights.
+/// twice (two objects, equal distances), a sphere of thin glass, a sheet of two sides with glass in its plane, of which one
+/// shines, and shadow bits of three lights.
 pub fn zoo() -> Scene {
     let mut scene = builtin::to_scene("spheres").unwrap().into_parts();
     let find = |scene: &SceneParts, name: &str| scene.materials.iter().position(|m| m.name == name).unwrap();
@@ -273,6 +273,7 @@ pub fn zoo() -> Scene {
     let paint = |name: &str, diffuse, surface| rarefy::internal::scene::Material {
         name: name.into(),
         diffuse,
+        emission: glam::Vec3::new(0.0, 0.05, 0.2) * if name == "front" { 1.0 } else { 0.0 },
         surface,
         ..Default::default()
     };

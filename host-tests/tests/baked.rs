@@ -67,9 +67,9 @@ fn a_baked_scene_is_the_scene_and_draws_its_picture() {
 }
 
 #[test]
-fn a_file_of_version_2_stays_readable() {
+fn a_file_of_version_3_stays_readable() {
     // If this fails because nodes or structs changed, the format needs another version, and this test another file.
-    let path = root().join("host-tests/golden/tiny-version-2.baked");
+    let path = root().join("host-tests/golden/tiny-version-3.baked");
     if std::env::var_os("RAREFY_BLESS").is_some() {
         std::fs::write(&path, bytes_of(&tiny())).unwrap();
     }
@@ -129,7 +129,7 @@ fn another_version_and_other_files_are_told_apart() {
     let mut bytes = bytes_of(&tiny());
     bytes[16] = 7;
     let said = message(&bytes);
-    assert!(said.contains("has version 7, this Rarefy reads version 2; bake it again"), "{said}");
+    assert!(said.contains("has version 7, this Rarefy reads version 3; bake it again"), "{said}");
     for other in [&b"v 0 0 0\nv 1 0 0\n"[..], b"", b"rarefy baked", b"rarefy baked\n\x1a\n and more of them that are"] {
         assert!(message(other).contains("this is no baked scene"), "{other:?}");
         assert!(!PreparedScene::is_baked(other));
@@ -196,9 +196,10 @@ fn every_rule_is_checked_behind_the_checksum() {
         (with(Part::Materials, 0, 7, float(0.5)), "materials[0].index_of_refraction"),
         (with(Part::Materials, 0, 11, float(2.0)), "materials[0].own"),
         (with(Part::Materials, 0, 12, float(-0.5)), "materials[0].transmission"),
-        (with(Part::Materials, 0, 16, 4), "materials[0].surface"),
-        (with(Part::Materials, 0, 17, 77), "materials[0].diffuse_texture"),
-        (with(Part::Materials, 0, 18, 77), "materials[0].cutout_texture"),
+        (with(Part::Materials, 0, 16, float(-0.5)), "materials[0].emission"),
+        (with(Part::Materials, 0, 20, 4), "materials[0].surface"),
+        (with(Part::Materials, 0, 21, 77), "materials[0].diffuse_texture"),
+        (with(Part::Materials, 0, 22, 77), "materials[0].cutout_texture"),
         (with(Part::ObjectMaterials, 0, 0, 77), "object_materials[0]: there is no material 77"),
         (with(Part::Textures, 0, 0, u32::MAX), "textures[0]: it ends at texel"),
         (with(Part::Textures, 0, 1, 0), "textures[0]: 0x"),
@@ -262,9 +263,9 @@ fn the_command_bakes_and_draws_what_it_baked() {
     }
     assert!(!counts("spheres").contains(" 0 textures"));
     let said = rarefy(&["doctor", "rods.baked"]).expect(0).stdout;
-    assert!(said.starts_with("rods: baked, version 2 of the format, full shading: "), "{said}");
+    assert!(said.starts_with("rods: baked, version 3 of the format, full shading: "), "{said}");
     let json = rarefy(&["doctor", "rods.baked", "--json", "-"]).expect(0).stdout;
-    assert!(json.contains("\"baked_version\": 2"), "{json}");
+    assert!(json.contains("\"baked_version\": 3"), "{json}");
     let mut broken = file("rods.baked");
     broken.truncate(5000);
     std::fs::write(folder.path().join("broken.baked"), broken).unwrap();

@@ -327,6 +327,7 @@ const SHADING: &[Mutant] = &[
     ("common/shade.clh", "(1.0f - t) * (float)height", "t * (float)height", Shot::Zoo, STEP1),
     ("common/shade.clh", "m->diffuse.xyz * own", "m->diffuse.xyz", Shot::Room, STEP1),
     ("common/shade.clh", "kd * frame->ambient.xyz", "kd", Shot::Rods, STEP1),
+    ("common/shade.clh", " + m->emission.xyz", "", Shot::Zoo, STEP1),
     ("common/shade.clh", "(shadow_bits >> i) & 1u", "(shadow_bits >> i) & 2u", Shot::Rods, STEP1),
     ("common/shade.clh", "radiance * inverse_d2", "radiance", Shot::Rods, STEP1),
     ("common/shade.clh", "normalize3(l + view)", "normalize3(l - view)", Shot::Zoo, STEP1),

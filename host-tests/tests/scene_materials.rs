@@ -93,6 +93,16 @@ fn highlights_that_are_none_leave_the_colour() {
 }
 
 #[test]
+fn a_surface_shines_as_its_ke_says() {
+    // Black but for its own light.
+    assert_eq!(middle("11e-Ke"), [255; 3]);
+    noticed("11e-Ke", &["Ke: it shines, but lights nothing else; place lights in view.json (`m`)"]);
+    // The picture that says where it shines is not read: better dark than bright all over, and it is told.
+    assert_eq!(middle("11h-map_Ke"), [0; 3]);
+    noticed("11h-map_Ke", &["Ke with map_Ke is not used", "not used: `map_Ke` (line 4)"]);
+}
+
+#[test]
 fn a_texture_shows_in_any_letter_case_and_at_kd_0() {
     shows_the_picture("11f-Kd0-map");
     noticed("11f-Kd0-map", &["Kd 0 with a texture"]);
@@ -127,7 +137,6 @@ fn keys_that_are_not_used_are_told_once_with_their_line() {
         &["`map_Bump` (line 3), `norm` (line 4), `map_Ks` (line 5), `Pr` (line 6), `Pm` (line 7), `map_Pm` (line 8)"],
     );
     noticed("11g-map_Ka-only", &["`map_Ka` (line 3)"]);
-    noticed("11h-map_Ke", &["`map_Ke` (line 4)"]);
     noticed("15h-vertex-colours", &["scene.obj: not used: `vertex colours` (4 times from line 2)"]);
     noticed("15k-zbrush-mrgb", &["scene.obj: not used: `#MRGB` (line 5)"]);
     found("14zz-bump-pbr", Severity::Note, "keys", "`norm` (line 4) is not used: surfaces are as smooth");

@@ -87,12 +87,13 @@ pub struct Material {
     pub specular: [f32; 4],
     pub reflectance: [f32; 4],
     pub transmission: [f32; 4],
+    pub emission: [f32; 4],
     pub surface: u32,
     pub diffuse_texture: u32,
     pub cutout_texture: u32,
     pub pad0: u32,
 }
-const _: () = assert!(size_of::<Material>() == 80);
+const _: () = assert!(size_of::<Material>() == 96);
 
 /// `Texture` of `kernels/types.h`.
 #[repr(C)]
@@ -197,6 +198,7 @@ pub fn struct_layout() -> Vec<LayoutEntry> {
             specular,
             reflectance,
             transmission,
+            emission,
             surface,
             diffuse_texture,
             cutout_texture,

@@ -267,6 +267,7 @@ fn flatten_material(m: &crate::scene::Material, anchor: bool) -> layout::Materia
         specular: float4(m.specular, m.index_of_refraction),
         reflectance: float4(reflectance, own),
         transmission: float4(m.transmission * (1.0 - m.opacity), 0.0),
+        emission: if anchor { [0.0; 4] } else { float4(m.emission, 0.0) },
         surface,
         diffuse_texture: texture(m.diffuse_texture),
         cutout_texture: texture(m.cutout_texture),

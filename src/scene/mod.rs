@@ -277,6 +277,8 @@ pub struct Material {
     pub shininess: f32,
     /// `Tf`, linear RGB: colour of light that passes through glass.
     pub transmission: Vec3,
+    /// `Ke`, linear RGB: light that the surface sends of its own. It lights no other surface; mirrors show it.
+    pub emission: Vec3,
     /// `Ni`: index of refraction, at least 1.
     pub index_of_refraction: f32,
     /// Share of its own colour that glass shows, from 0 (clear) to 1; it lets the rest through. Other surfaces show all
@@ -299,6 +301,7 @@ impl Default for Material {
             specular: Vec3::ZERO,
             shininess: 1.0,
             transmission: Vec3::ONE,
+            emission: Vec3::ZERO,
             index_of_refraction: 1.5,
             opacity: 0.0,
             surface: Surface::Opaque,

@@ -57,7 +57,7 @@ pub fn shade_local(scene: &SceneArgs, point: &ShadePoint, view: Vec3) -> Vec3 {
     }
     let shininess = m.diffuse[3];
     let has_highlight = max2(ks.x, max2(ks.y, ks.z));
-    let mut sum = kd * xyz(scene.frame.ambient);
+    let mut sum = kd * xyz(scene.frame.ambient) + xyz(m.emission);
     for (i, light) in scene.lights.iter().enumerate().take(scene.frame.light_count as usize) {
         if (point.shadow_bits >> i) & 1 != 0 {
             continue;

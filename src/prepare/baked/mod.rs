@@ -36,7 +36,7 @@ use crate::{Error, Result, files};
 const MAGIC: &[u8; 16] = b"rarefy baked\r\n\x1a\n";
 
 /// Version of the format, and of the meaning of its arrays: another layout of nodes or structs is another version.
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 
 /// Magic, version, checksum, length.
 const PREFIX_BYTES: u64 = 32;

@@ -97,10 +97,14 @@ fn textures(scene: &PreparedScene) -> Checked {
 }
 
 fn material_is_sound(m: &layout::Material, textures: usize) -> Checked {
-    let [diffuse, specular, reflectance, transmission] = [m.diffuse, m.specular, m.reflectance, m.transmission];
-    for (key, rgb) in
-        [("diffuse", diffuse), ("specular", specular), ("reflectance", reflectance), ("transmission", transmission)]
-    {
+    let (diffuse, specular, reflectance) = (m.diffuse, m.specular, m.reflectance);
+    for (key, rgb) in [
+        ("diffuse", diffuse),
+        ("specular", specular),
+        ("reflectance", reflectance),
+        ("transmission", m.transmission),
+        ("emission", m.emission),
+    ] {
         if !is_colour(&rgb[..3], MAX_RADIANCE) {
             return wrong(key, format!("{:?} is out of range (0 to {MAX_RADIANCE:e})", &rgb[..3]));
         }

@@ -39,6 +39,7 @@ pub fn scene_of(model: &Model) -> Result<Scene> {
             diffuse: Vec3::from(m.diffuse),
             specular: Vec3::from(m.specular),
             shininess: m.shininess,
+            emission: base.emission,
             transmission: if passes { Vec3::from(m.transmission) } else { base.transmission },
             index_of_refraction: if passes { m.index_of_refraction } else { base.index_of_refraction },
             opacity: base.opacity,

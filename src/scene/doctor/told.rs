@@ -131,7 +131,7 @@ fn is_told_in_full_only(key: &UnusedKey) -> bool {
 fn reason(key: &str) -> &'static str {
     match key.to_ascii_lowercase().as_str() {
         "ka" | "map_ka" => "ambient light is the view's (`suggested_ambient`), and what reflects it is Kd and map_Kd",
-        "ke" | "map_ke" => "surfaces do not shine; place a light in view.json",
+        "map_ke" => "a surface shines in one colour (`Ke`), or not at all",
         "bump" | "map_bump" | "norm" | "map_norm" | "map_kn" | "disp" | "map_disp" => {
             "surfaces are as smooth as their normals (`vn`) say"
         }
@@ -169,7 +169,7 @@ mod tests {
         leaf.cutout_because = "map_d";
         leaf.mended.push("Kd 0: mended");
         all.push(leaf);
-        let mut unused_keys = vec![key("x.mtl", "Ka", 3), key("x.mtl", "Ke", 1), key("x.mtl", "norm", 2)];
+        let mut unused_keys = vec![key("x.mtl", "Ka", 3), key("x.mtl", "map_Ke", 1), key("x.mtl", "norm", 2)];
         unused_keys.push(key("x.obj", "foo", 2));
         LoadNotes { materials: all, unused_keys, ..LoadNotes::default() }
     }
@@ -182,7 +182,7 @@ mod tests {
                 "materials: 4 mirrors (listed in view.json): `a`, `b`, `c` and 1 more; 1 thin glass (d or Tr below 1): `e`; \
                  1 cut-out (map_d): `leaf`",
                 "materials, not as written: Kd 0: mended (`leaf`)",
-                "x.mtl: not used: `Ke` (line 7), `norm` (2 times from line 7)",
+                "x.mtl: not used: `map_Ke` (line 7), `norm` (2 times from line 7)",
                 "x.obj: not used: `foo` (2 times from line 7)",
             ]
         );
@@ -203,7 +203,7 @@ mod tests {
                 "Kd 0: mended (`leaf` [illum 4])",
                 "x.mtl: `Ka` (3 times from line 7) is not used: ambient light is the view's (`suggested_ambient`), and what \
                  reflects it is Kd and map_Kd",
-                "x.mtl: `Ke` (line 7) is not used: surfaces do not shine; place a light in view.json",
+                "x.mtl: `map_Ke` (line 7) is not used: a surface shines in one colour (`Ke`), or not at all",
                 "x.mtl: `norm` (2 times from line 7) is not used: surfaces are as smooth as their normals (`vn`) say",
                 "x.obj: `foo` (2 times from line 7) is not used: it is unknown",
             ]

@@ -228,6 +228,17 @@ impl Finish {
             Some(tf) => tf,
             None => base.transmission,
         };
+        let emission = match m.emission {
+            Some(ke) if ke != Vec3::ZERO && m.has_emission_map => {
+                mended.push("Ke with map_Ke is not used: no picture shines");
+                base.emission
+            }
+            Some(ke) if ke != Vec3::ZERO => {
+                mended.push("Ke: it shines, but lights nothing else; place lights in view.json");
+                ke
+            }
+            _ => base.emission,
+        };
         let index_of_refraction = match surface {
             // Models below 3 ask for no reflection: a film, not a pane.
             Surface::ThinGlass if !by_list && !e.illum(&[3, 4, 5, 6, 7, 9]) => 1.0,
@@ -239,6 +250,7 @@ impl Finish {
             specular,
             shininess,
             transmission,
+            emission,
             index_of_refraction,
             opacity,
             surface,
@@ -265,7 +277,7 @@ fn keys_of(m: &MtlMaterial) -> String {
     number("Tr", m.transparency);
     number("Ni", m.index_of_refraction);
     number("Ns", m.shininess);
-    for (key, colour) in [("Kd", m.diffuse), ("Ks", m.specular), ("Tf", m.transmission)] {
+    for (key, colour) in [("Kd", m.diffuse), ("Ks", m.specular), ("Tf", m.transmission), ("Ke", m.emission)] {
         keys.extend(colour.map(|c| format!("{key} {} {} {}", c.x, c.y, c.z)));
     }
     keys.join(", ")
@@ -414,6 +426,20 @@ mod tests {
             becomes(&format!("illum {illum}; Ks 1 1 1; Ns 50; Kd .5 .5 .5"), "", Opaque, "");
         }
         becomes("", "", Opaque, "");
+    }
+
+    #[test]
+    fn light_of_its_own_has_the_colour_of_ke_and_is_told() {
+        let (lamp, note, _) = decided("Kd 0 0 0; Ke 30 20 10", "");
+        assert_eq!((lamp.emission, lamp.surface), (Vec3::new(30.0, 20.0, 10.0), Opaque));
+        assert!(note.mended.iter().any(|m| m.contains("lights nothing else")), "{note:?}");
+        let (dark, note, _) = decided("Kd 0 0 0; Ke 0 0 0; map_Ke t.png", "");
+        assert!(dark.emission == Vec3::ZERO && note.mended.is_empty(), "{note:?}");
+        let (unread, note, _) = decided("map_Ke t.png; Ke 1 1 1", "");
+        assert!(unread.emission == Vec3::ZERO && note.mended.len() == 1, "{note:?}");
+        let (limited, _, warnings) = decided("Ke -1 0 1e30", "");
+        assert_eq!(limited.emission, Vec3::new(0.0, 0.0, crate::scene::MAX_RADIANCE));
+        assert!(warnings[0].contains("`Ke` is limited to 0 .. "), "{warnings:?}");
     }
 
     #[test]

@@ -4,7 +4,7 @@
 //!
 //! Meaning of the keys, in any letter case: `Kd` diffuse colour; `Ks` highlight, and what a mirror reflects; `Ns`
 //! Blinn-Phong exponent; `Ni` index of refraction; `Tf` colour of light through glass; `d` and `Tr` opacity and
-//! 1 - opacity; `map_Kd` picture that `Kd` multiplies (options `-s` and `-o` apply); `map_d` (or `map_opacity`) cut-out
+//! 1 - opacity; `Ke` light of its own; `map_Kd` picture that `Kd` multiplies (options `-s` and `-o` apply); `map_d` (or `map_opacity`) cut-out
 //! mask; `illum` what kind of surface is asked for. What a material becomes of these is decided in [`super::material`].
 //! Every other key is counted.
 
@@ -19,7 +19,7 @@ use super::notices::Notices;
 use super::source::Source;
 use super::unused::Tally;
 use crate::Result;
-use crate::scene::UnusedKey;
+use crate::scene::{MAX_RADIANCE, UnusedKey};
 
 /// A `map_` line.
 #[derive(Debug, Clone, PartialEq)]
@@ -38,6 +38,9 @@ pub(super) struct MtlMaterial {
     pub specular: Option<Vec3>,
     pub shininess: Option<f32>,
     pub transmission: Option<Vec3>,
+    pub emission: Option<Vec3>,
+    /// `map_Ke` is there, which is not read: `Ke` is then the brightest of a picture that is mostly dark.
+    pub has_emission_map: bool,
     pub index_of_refraction: Option<f32>,
     /// `d`.
     pub dissolve: Option<f32>,
@@ -124,6 +127,7 @@ fn parse(source: &Source, path: &Path, warnings: &mut Vec<String>, tally: &mut T
             b"kd" => "Kd",
             b"ks" => "Ks",
             b"tf" => "Tf",
+            b"ke" => "Ke",
             b"ns" => "Ns",
             b"ni" => "Ni",
             b"d" => "d",
@@ -132,12 +136,15 @@ fn parse(source: &Source, path: &Path, warnings: &mut Vec<String>, tally: &mut T
             b"map_kd" => "map_Kd",
             b"map_d" | b"map_opacity" => "map_d",
             // Blender writes these for every material, mostly as 0: that asks for nothing.
-            b"ka" | b"ke" | b"pm" | b"ps" | b"pc" | b"aniso" | b"anisor"
+            b"ka" | b"pm" | b"ps" | b"pc" | b"aniso" | b"anisor"
                 if numbers(rest).is_ok_and(|values| values.iter().all(|&v| v == 0.0)) =>
             {
                 continue;
             }
-            _ => {
+            other => {
+                if other == b"map_ke" {
+                    materials.set(|m| m.has_emission_map = true);
+                }
                 tally.note(written, number);
                 continue;
             }
@@ -152,7 +159,7 @@ fn parse(source: &Source, path: &Path, warnings: &mut Vec<String>, tally: &mut T
         }
         let mut wrong = |message: String| left_out(format!("`{key}`: {message}"));
         match key {
-            "Kd" | "Ks" | "Tf" => {
+            "Kd" | "Ks" | "Tf" | "Ke" => {
                 if let Some(first @ (b"spectral" | b"xyz")) = words(rest).next() {
                     let first = String::from_utf8_lossy(first);
                     wrong(format!("`{first}` is not supported"));
@@ -170,13 +177,16 @@ fn parse(source: &Source, path: &Path, warnings: &mut Vec<String>, tally: &mut T
                         continue;
                     }
                 };
-                if rgb.iter().any(|v| !(0.0..=1.0).contains(v)) {
-                    warnings.push(format!("{}:{number}: `{key}` is limited to 0 .. 1", path.display()));
+                // Surfaces shine as brightly as they like; they reflect no more than what they get.
+                let most = if key == "Ke" { MAX_RADIANCE } else { 1.0 };
+                if rgb.iter().any(|v| !(0.0..=most).contains(v)) {
+                    warnings.push(format!("{}:{number}: `{key}` is limited to 0 .. {most}", path.display()));
                 }
-                let rgb = Some(Vec3::from(rgb.map(|v| v.clamp(0.0, 1.0))));
+                let rgb = Some(Vec3::from(rgb.map(|v| v.clamp(0.0, most))));
                 materials.set(|m| match key {
                     "Kd" => m.diffuse = rgb,
                     "Ks" => m.specular = rgb,
+                    "Ke" => m.emission = rgb,
                     _ => m.transmission = rgb,
                 });
             }
@@ -329,7 +339,7 @@ mod tests {
     #[test]
     fn every_key_arrives() {
         let text = "# c\nnewmtl red glass\nKa 1 1 1\nKd 0.5\nKs .1 .2 .3\nNs 30\nNi 1.45\nTf 1 .5 .25\nTr 0.25\nillum 7\n\
-                    map_Kd -s 2 3 1 -clamp off my wood.jpg\nmap_d a.png\nnewmtl b\nd 0.5\n";
+                    map_Kd -s 2 3 1 -clamp off my wood.jpg\nmap_d a.png\nKe 30 4 0\nnewmtl b\nd 0.5\nKe 0 0 0\n";
         let (materials, warnings) = read_text(text);
         let materials = materials.unwrap();
         assert!(warnings.is_empty(), "{warnings:?}");
@@ -341,6 +351,7 @@ mod tests {
         assert_eq!((m.shininess, m.index_of_refraction), (Some(30.0), Some(1.45)));
         assert_eq!((m.dissolve, m.transparency), (None, Some(0.25)));
         assert_eq!((m.transmission, m.illumination_model), (Some(Vec3::new(1.0, 0.5, 0.25)), Some(7)));
+        assert_eq!((m.emission, materials[1].emission), (Some(Vec3::new(30.0, 4.0, 0.0)), Some(Vec3::ZERO)));
         let map = m.diffuse_map.as_ref().unwrap();
         assert_eq!((map.file.as_str(), map.texcoords.scale), ("my wood.jpg", Vec2::new(2.0, 3.0)));
         assert_eq!(m.cutout_map.as_ref().unwrap().file, "a.png");
@@ -364,10 +375,10 @@ mod tests {
     #[test]
     fn keys_that_are_not_used_are_counted() {
         let (materials, warnings, unused) =
-            read_all("newmtl a\n# Ke\n\nKe 1 1 1\nmap_Bump -bm 1 b.png\nnewmtl b\nKE 0 0 1\nfoo\nPm 0\nKe 0 0 0\n");
+            read_all("newmtl a\n# Pm\n\nPm 1\nmap_Bump -bm 1 b.png\nnewmtl b\nPM 0.5\nfoo\nPs 0\nPm 0\n");
         assert!(materials.is_ok() && warnings.is_empty());
         let keys: Vec<_> = unused.iter().map(|k| (k.key.as_str(), k.count, k.first_line)).collect();
-        assert_eq!(keys, [("Ke", 2, 4), ("map_Bump", 1, 5), ("foo", 1, 8)]);
+        assert_eq!(keys, [("Pm", 2, 4), ("map_Bump", 1, 5), ("foo", 1, 8)]);
         assert!(unused[0].file.ends_with("m.mtl"));
     }
 
