@@ -146,7 +146,7 @@ impl Tolerances {
     /// correction by normals mend what they miss, and a tighter GC, whose misses show most (docs/method.md).
     pub const FINE: Tolerances = Tolerances { t_pos: 0.06, t_norm: 0.9, t_conv: 0.2, t_tex: 0.5, t_gcol: 0.05 };
     /// Ours for references four pixels apart: an error there spreads over more pixels.
-    pub const COARSE: Tolerances = Tolerances { t_pos: 0.03, t_norm: 0.95, t_conv: 0.05, t_tex: 0.5, t_gcol: 0.06 };
+    pub const COARSE: Tolerances = Tolerances { t_pos: 0.03, t_norm: 0.9, t_conv: 0.2, t_tex: 0.5, t_gcol: 0.09 };
 
     fn validate(&self) -> Result<()> {
         check(Setting::TPos, self.t_pos, NOT_NEGATIVE)?;
