@@ -6,7 +6,7 @@ use glam::{DVec3, Vec3};
 use rarefy::Error;
 use rarefy::internal::device::open::{DeviceChoice, DeviceOptions};
 use rarefy::internal::layout::*;
-use rarefy::internal::method::counts::Keep;
+use rarefy::internal::method::counts::{Keep, PixelCounts};
 use rarefy::internal::method::options::{Compared, Correction, Method, Mode, RenderOptions};
 use rarefy::internal::render::frame::Frame;
 use rarefy::internal::render::renderer::Renderer;
@@ -47,7 +47,9 @@ fn assert_same_in_bands(renderer: &mut Renderer, options: &RenderOptions, band_r
         let (frame, classes) = draw(renderer, &banded);
         assert!(frame.pixels == whole.pixels, "bands of {rows} rows: another picture");
         assert!(classes == whole_classes, "bands of {rows} rows: other classes");
-        assert_eq!(frame.stats.pixels, whole.stats.pixels, "bands of {rows} rows");
+        // Which pixels chance finds first depends on the bands; where it all ends does not.
+        let ends = |frame: &Frame| PixelCounts { probes: 0, beside_probes: 0, ..frame.stats.pixels };
+        assert_eq!(ends(&frame), ends(&whole), "bands of {rows} rows");
         assert_eq!(frame.stats.failed_tests, whole.stats.failed_tests, "bands of {rows} rows");
         if options.mode == Mode::Full {
             assert_eq!(frame.stats.work, whole.stats.work, "bands of {rows} rows");

@@ -9,18 +9,29 @@ use crate::error::Result;
 use crate::layout::*;
 use crate::method::options::{Correction, RenderOptions};
 
-/// step4: spreads from the pixels listed so far; returns how many more pixels it fired at.
-pub(super) fn correct(queue: &mut Queue, options: &RenderOptions, seeds: &SeedRanges, listed: u32) -> Result<u32> {
-    let Some(step) = options.method.correction_params() else { return Ok(0) };
+/// How many pixels step4 fired at in a window.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Fired {
+    /// All of them.
+    pub all: u32,
+    /// Those that were traced by chance.
+    pub probes: u32,
+    /// Neighbours of these that disagreed with what they found.
+    pub beside_probes: u32,
+}
+
+/// step4: spreads from the pixels listed so far.
+pub(super) fn correct(queue: &mut Queue, options: &RenderOptions, seeds: &SeedRanges, listed: u32) -> Result<Fired> {
+    let Some(step) = options.method.correction_params() else { return Ok(Fired::default()) };
     // A plan's windows are such that every list address is a 32-bit number.
     let list_end = most_listed_pixels(queue.params()) as u32;
     let step = StepParams { list_end, pixel_class: CLASS_CORRECTED, ..step };
     match options.method.correction {
-        Correction::Off => Ok(0),
+        Correction::Off => Ok(Fired::default()),
         Correction::Converged { bridges, probes, .. } => {
             correct_converged(queue, &step, bridges, probes, seeds, listed)
         }
-        Correction::Sweeps(_) => correct_by_sweeps(queue, &step),
+        Correction::Sweeps(_) => Ok(Fired { all: correct_by_sweeps(queue, &step)?, ..Fired::default() }),
     }
 }
 
@@ -32,7 +43,7 @@ fn correct_converged(
     probes: bool,
     seeds: &SeedRanges,
     listed: u32,
-) -> Result<u32> {
+) -> Result<Fired> {
     let settle = StepParams { item_count: seeds.settled, flags: step.flags | StepFlags::SETTLE, ..*step };
     trace_list(queue, Stage::Step4, &settle)?;
     let mut list_offset = listed;
@@ -47,10 +58,15 @@ fn correct_converged(
         trace_list(queue, Stage::Step4, &fire)?;
         list_offset += fire_from(queue, step, seeds.settled, seeds.fired, list_offset)?;
     }
+    let mut fired = Fired::default();
     if probes && seeds.first_time {
-        let count = list_probes(queue, step, list_offset)?;
-        trace_list(queue, Stage::Step4, &StepParams { item_count: count, list_offset, ..*step })?;
-        list_offset += count;
+        fired.probes = list_probes(queue, step, list_offset)?;
+        trace_list(queue, Stage::Step4, &StepParams { item_count: fired.probes, list_offset, ..*step })?;
+        // A round of their own tells what chance finds: an estimate of what nothing finds.
+        let first_probe = list_offset;
+        list_offset += fired.probes;
+        fired.beside_probes = fire_from(queue, step, first_probe, fired.probes, list_offset)?;
+        list_offset += fired.beside_probes;
     }
     let mut source_offset = listed;
     while list_offset > source_offset {
@@ -66,7 +82,7 @@ fn correct_converged(
             (list_offset, list_offset + fire_from(queue, step, source_offset, sources, list_offset)?)
         };
     }
-    Ok(list_offset - listed)
+    Ok(Fired { all: list_offset - listed, ..fired })
 }
 
 /// Lists one interpolated pixel in each tile of the interior, to be traced for no reason: what no ray has met is found by

@@ -63,13 +63,21 @@ pub struct PixelCounts {
     pub interpolated: u64,
     /// Traced in step4, changed or confirmed.
     pub corrected: u64,
+    /// Of the corrected ones, those that were traced by chance. In a frame of several bands this and the next one depend on
+    /// them: chains from other bands may come first.
+    #[serde(skip)]
+    pub probes: u64,
+    /// Of the corrected ones, the interpolated neighbours that disagree with what a probe found.
+    #[serde(skip)]
+    pub beside_probes: u64,
 }
 
 impl PixelCounts {
     /// The counts of a frame's interior rows, of which so many pixels were base pixels, traced and corrected.
     pub fn new(frame: &FrameParams, base: u64, traced: u64, corrected: u64) -> Self {
         let pixels = u64::from(frame.width) * u64::from(frame.interior_end - frame.interior_begin);
-        PixelCounts { base, traced, corrected, interpolated: pixels - base - traced - corrected }
+        let interpolated = pixels - base - traced - corrected;
+        PixelCounts { base, traced, corrected, interpolated, ..PixelCounts::default() }
     }
 
     /// Adds the counts of another window.
@@ -78,6 +86,8 @@ impl PixelCounts {
         self.traced += other.traced;
         self.interpolated += other.interpolated;
         self.corrected += other.corrected;
+        self.probes += other.probes;
+        self.beside_probes += other.beside_probes;
     }
 }
 

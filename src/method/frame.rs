@@ -166,6 +166,9 @@ impl FrameInProgress<'_> {
         let listed = adaptive_window(queue, self.options, self.extent, seeds)?;
         let window = queue.params();
         let base = self.base_pixels(&(window.window_begin..window.window_end));
+        let (probes, beside_probes) = listed.probes();
+        self.counts.probes += probes;
+        self.counts.beside_probes += beside_probes;
         self.sums.primary += base + listed.traced().len() as u64;
         let (traced, corrected) = if self.plan.is_one_band() {
             // All is interior, and no chain leaves it: nobody asks which pixels these are.

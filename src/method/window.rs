@@ -2,7 +2,7 @@
 //! A window of a frame, step by step, as the paper tells it: the same launches for every executor. A frame that fits into
 //! memory is one window; [`super::bands`] draws those that do not.
 
-use super::correction::correct;
+use super::correction::{Fired, correct};
 use super::packing::{Packing, SeedRanges, pack, trace_list};
 use crate::device::frame_memory::FrameBuffer;
 use crate::device::queue::Queue;
@@ -65,8 +65,8 @@ pub fn adaptive_window(
         listed += count;
     }
 
-    let corrected = correct(queue, options, &seeds, listed)?;
-    Ok(ListRanges { seeds, traced_end: listed, corrected_end: listed + corrected })
+    let fired = correct(queue, options, &seeds, listed)?;
+    Ok(ListRanges { seeds, traced_end: listed, fired })
 }
 
 /// What post-correction already knows of a window when it is drawn.
@@ -84,7 +84,7 @@ pub struct CorrectionSeeds<'a> {
 pub struct ListRanges {
     seeds: SeedRanges,
     traced_end: u32,
-    corrected_end: u32,
+    fired: Fired,
 }
 
 impl ListRanges {
@@ -93,9 +93,14 @@ impl ListRanges {
         self.seeds.len() as usize..self.traced_end as usize
     }
 
+    /// How many step4's probes were, and how many pixels they led to in their first round.
+    pub fn probes(&self) -> (u64, u64) {
+        (self.fired.probes.into(), self.fired.beside_probes.into())
+    }
+
     /// Fired at in step4, those of [`CorrectionSeeds`] not included; outside of the interior they got no ray.
     pub fn corrected(&self) -> std::ops::Range<usize> {
-        self.traced_end as usize..self.corrected_end as usize
+        self.traced_end as usize..(self.traced_end + self.fired.all) as usize
     }
 }
 

@@ -132,12 +132,9 @@ pub(crate) fn has_area([a, b, c]: [Vec3; 3]) -> bool {
 
 /// What is wrong with a material: field and message.
 fn check_material(m: &Material, textures: usize) -> std::result::Result<(), Wrong> {
-    for (key, v) in [
-        ("diffuse", m.diffuse),
-        ("specular", m.specular),
-        ("transmission", m.transmission),
-        ("emission", m.emission),
-    ] {
+    for (key, v) in
+        [("diffuse", m.diffuse), ("specular", m.specular), ("transmission", m.transmission), ("emission", m.emission)]
+    {
         if !(v.is_finite() && v.min_element() >= 0.0 && v.max_element() <= MAX_RADIANCE) {
             return wrong(key, format!("{v} is out of range (0 to {MAX_RADIANCE:e})"));
         }
