@@ -4,7 +4,7 @@
 # nothing is missing. To be sourced after lib.sh, from the repository's root:
 #
 #   . .ci/setup.sh run    Rust, and PoCL to run the kernels on the CPU
-#   . .ci/setup.sh test   also a JDK, and clang to check kernels as strict OpenCL C 1.2
+#   . .ci/setup.sh test   also a JDK, Maven, and clang to check kernels as strict OpenCL C 1.2
 #   . .ci/setup.sh long   also oclgrind and Mesa's OpenCL
 #
 # Rust is required. The rest is as good as it can be got: a test whose tool is missing fails and says what it needs.
@@ -29,6 +29,9 @@ opencl=no
 if [ "$1" = test ] || [ "$1" = long ]; then
     have javac || need_packages "the tests of the JNI library" default-jdk-headless ||
         say "without a JDK the tests of the JNI library fail; RAREFY_TEST_JVM=none waives them" >&2
+    # The demo app's screens: files of Maven Central, and a resource linker of PyPI's.
+    need_packages "the tests of the demo app's screens" maven python3 python3-pip ||
+        say "without Maven and pip the tests of the demo app's screens fail; RAREFY_TEST_SCREENS=none waives them" >&2
     have clang || have clang-14 || need_packages "the tests of the kernels without a device" clang ||
         say "without clang the strict check of the kernels fails; RAREFY_TEST_CLANG=none waives it" >&2
 fi
