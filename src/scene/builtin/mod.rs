@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Scenes of our own, made by deterministic code: a café and a kitchen to look at, and four tiny scenes for tests.
+//! Scenes of our own, made by deterministic code: a café, a kitchen and a bathroom to look at, and four tiny scenes for tests.
 //!
 //! Each scene has a folder `scenes/NAME` with its `view.json` and the parameters of its generator; both are part of
 //! the library. The generators use `+ - * /` and square roots alone, so that every platform makes the same bytes.
 
+pub mod bathroom;
 pub mod cafe;
 mod convert;
 mod export;
@@ -25,7 +26,7 @@ use crate::error::Setting;
 use crate::{Error, Result, Scene};
 
 /// The names of all built-in scenes.
-pub const NAMES: [&str; 6] = ["cafe", "kitchen", "wall", "spheres", "rods", "mirror-room"];
+pub const NAMES: [&str; 7] = ["cafe", "kitchen", "bathroom", "wall", "spheres", "rods", "mirror-room"];
 
 /// Makes a built-in scene.
 ///
@@ -40,6 +41,10 @@ pub fn generate(name: &str) -> Result<Model> {
         "kitchen" => kitchen::generate(
             &parameters(name, include_str!("../../../scenes/kitchen/parameters.json"))?,
             include_str!("../../../scenes/kitchen/view.json"),
+        )?,
+        "bathroom" => bathroom::generate(
+            &parameters(name, include_str!("../../../scenes/bathroom/parameters.json"))?,
+            include_str!("../../../scenes/bathroom/view.json"),
         )?,
         "wall" => tiny::wall(
             &parameters(name, include_str!("../../../scenes/wall/parameters.json"))?,
@@ -107,20 +112,22 @@ mod tests {
     fn changed(scene: &str, from: &str, to: &str) -> Result<Model> {
         let text = match scene {
             "cafe" => include_str!("../../../scenes/cafe/parameters.json"),
-            _ => include_str!("../../../scenes/kitchen/parameters.json"),
+            "kitchen" => include_str!("../../../scenes/kitchen/parameters.json"),
+            _ => include_str!("../../../scenes/bathroom/parameters.json"),
         };
         assert!(text.contains(from), "{from}");
         let text = text.replace(from, to);
         let model = match scene {
             "cafe" => cafe::generate(&parameters(scene, &text)?, "{}"),
-            _ => kitchen::generate(&parameters(scene, &text)?, "{}"),
+            "kitchen" => kitchen::generate(&parameters(scene, &text)?, "{}"),
+            _ => bathroom::generate(&parameters(scene, &text)?, "{}"),
         };
         model?.finish()
     }
 
     #[test]
     fn parameters_out_of_range_are_refused_with_key_and_range() {
-        for scene in ["cafe", "kitchen"] {
+        for scene in ["cafe", "kitchen", "bathroom"] {
             assert!(changed(scene, "\"seed\": 2016", "\"seed\": 1").is_ok());
         }
         let cafe = [
@@ -141,7 +148,20 @@ mod tests {
             ("\"at\": [-0.25, 1.75, 0.75]", "\"at\": [-0.25, 2.65, 0.75]", "`lamps.at` is 2.65"),
             ("\"spices\"", "\"spice\"", "unknown field `spice`"),
         ];
-        for (scene, cases) in [("cafe", cafe.as_slice()), ("kitchen", kitchen.as_slice())] {
+        let bathroom = [
+            ("\"tiles\": 0.98", "\"tiles\": 2", "`room.tiles` is 2"),
+            ("\"far\": -0.6", "\"far\": -1.5", "`window.far` is -1.5"),
+            ("\"size\": [1.05, 1.05]", "\"size\": [1.05, 3]", "`shower.size` is 3"),
+            ("\"size\": [0.72, 1.62]", "\"size\": [0.1, 1.62]", "`tub.size` is 0.1"),
+            ("\"mosaic_tile\": 0.04", "\"mosaic_tile\": -1", "`mosaic_tile` is -1"),
+            ("\"bubbles\": 270", "\"bubbles\": 1000000", "`bubbles`"),
+            ("\"mat\": [20, 30]", "\"mat\": [20, 0]", "`mat` is 0"),
+            ("\"stakes\": 30", "\"stakes\": 1", "`stakes` is 1"),
+            ("\"leaves\"", "\"leafs\"", "unknown field `leafs`"),
+        ];
+        for (scene, cases) in
+            [("cafe", cafe.as_slice()), ("kitchen", kitchen.as_slice()), ("bathroom", bathroom.as_slice())]
+        {
             for (from, to, expected) in cases {
                 let message = changed(scene, from, to).unwrap_err().to_string();
                 assert!(message.contains(expected), "{message}");
@@ -154,6 +174,7 @@ mod tests {
         for (scene, from, to) in [
             ("cafe", "\"glass_sides\": 21", "\"glass_sides\": 42"),
             ("kitchen", "\"small_sides\": 14", "\"small_sides\": 28"),
+            ("bathroom", "\"towel_cells\": 34", "\"towel_cells\": 60"),
         ] {
             let base = changed(scene, "\"seed\": 2016", "\"seed\": 2016").unwrap();
             let other = changed(scene, "\"seed\": 2016", "\"seed\": 2017").unwrap();

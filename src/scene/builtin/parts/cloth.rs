@@ -60,12 +60,12 @@ pub fn hung_towel(wide: f32, front: f32, back: f32, radius: f32, cells: u32, pha
         } else {
             (front + bend - s, -radius, s - front - bend)
         };
-        let deep = (hang * 0.10).min(0.034);
+        let deep = (hang * 0.13).min(0.042);
         let fold = wave(u * 2.6 + phase + 0.12 * hang) * 0.6 + wave(u * 4.3 + 0.4 + phase) * 0.4;
         let narrow = 1.0 - 0.10 * (hang / (hang + 0.5));
         // Behind the rail is a wall: there the cloth hangs flatter.
         let z = if z < 0.0 { z - deep * 0.15 * (1.0 + fold) } else { z + deep * (1.0 + fold) };
-        at((u - 0.5) * wide * narrow, y + 0.004 * fold * deep / 0.034, z)
+        at((u - 0.5) * wide * narrow, y + 0.1 * fold * deep, z)
     };
     let along = ((cells as f32 * length / wide) as u32).clamp(8, 400);
     thick_sheet(cells, along, 0.007, place)
@@ -74,12 +74,12 @@ pub fn hung_towel(wide: f32, front: f32, back: f32, radius: f32, cells: u32, pha
 /// A towel that is folded to a flat parcel of three layers, `wide` along x and `deep` along z, on the origin.
 pub fn folded_towel(wide: f32, deep: f32, cells: u32) -> Mesh {
     // A flat spiral in the plane of y and z, which the cloth follows.
-    let (gap, rows) = (0.0135, 3.0);
-    let thickness = 0.0115;
+    let (gap, rows) = (0.0145, 3.0);
+    let thickness = 0.0105;
     let place = move |u: f32, v: f32| {
         let row = (v * rows).floor().min(rows - 1.0);
         let t = v * rows - row;
-        let turn = 0.12;
+        let turn = 0.2;
         let forth = row as i32 % 2 == 0;
         let half = 0.5 * deep - 0.5 * gap;
         let (along, lift) = if t > 1.0 - turn && row < rows - 1.0 {

@@ -4,7 +4,7 @@
 use glam::{Vec2, Vec3};
 
 use super::at;
-use crate::scene::builtin::mesh::{Mesh, smooth_path};
+use crate::scene::builtin::mesh::{Mesh, cos_sin, smooth_path};
 
 /// Thickness of a door.
 pub const DOOR: f32 = 0.022;
@@ -28,6 +28,12 @@ impl Spot {
     pub fn put(&self, mesh: Mesh) -> Mesh {
         let mesh = if self.turns == 0.0 { mesh } else { mesh.turned_y(self.turns) };
         mesh.moved(self.origin)
+    }
+
+    /// The place of a point of it.
+    pub fn point(&self, point: Vec3) -> Vec3 {
+        let (c, s) = cos_sin(self.turns);
+        at(c * point.x + s * point.z, point.y, c * point.z - s * point.x) + self.origin
     }
 }
 
@@ -103,5 +109,6 @@ mod tests {
             .put(Mesh::quad([at(0.0, 0.0, 0.0), at(1.0, 0.0, 0.0), at(1.0, 1.0, 0.0), at(0.0, 1.0, 0.0)], Vec2::ONE));
         assert!((mesh.normals[0] + Vec3::X).length() < 1e-5, "{}", mesh.normals[0]);
         assert!((mesh.positions[1] - at(2.0, 0.0, 2.0)).length() < 1e-5, "{}", mesh.positions[1]);
+        assert!((spot.point(Vec3::X) - mesh.positions[1]).length() < 1e-5);
     }
 }
