@@ -7,7 +7,7 @@
 
 use std::sync::OnceLock;
 
-use jni::objects::{JClass, JObject};
+use jni::objects::{IntoAuto as _, JClass, JObject};
 use jni::refs::Global;
 use jni::signature::MethodSignature;
 use jni::strings::JNIStr;
@@ -38,10 +38,12 @@ pub const DEVICE_INFO: Constructor = Constructor {
     ),
 };
 
-/// `OpenClReport(String library, String[] refused, String[] devices, String[] skipped)`.
+/// `OpenClReport(String library, String[] refused, String[] devices, String[] skipped, String[] profiles)`.
 pub const OPENCL_REPORT: Constructor = Constructor {
     name: jni_str!("dev/rarefy/OpenClReport"),
-    signature: jni_sig!("(Ljava/lang/String;[Ljava/lang/String;[Ljava/lang/String;[Ljava/lang/String;)V"),
+    signature: jni_sig!(
+        "(Ljava/lang/String;[Ljava/lang/String;[Ljava/lang/String;[Ljava/lang/String;[Ljava/lang/String;)V"
+    ),
 };
 
 /// `Picture(int width, int height, int[] argb)`.
@@ -147,8 +149,8 @@ fn called(env: &mut Env<'_>, method: &Method) -> jni::errors::Result<Global<JCla
 pub fn strings<'local, S: AsRef<str>>(env: &mut Env<'local>, texts: &[S]) -> jni::errors::Result<JObject<'local>> {
     let array = env.new_object_array(texts.len() as jni::sys::jsize, jni_str!("java/lang/String"), JObject::null())?;
     for (at, text) in texts.iter().enumerate() {
-        let text = env.new_string(text)?;
-        array.set_element(env, at, &JObject::from(text))?;
+        let text = JObject::from(env.new_string(text)?).auto();
+        array.set_element(env, at, &text)?;
     }
     Ok(array.into())
 }

@@ -7,7 +7,7 @@ use std::io::{self, Read, Seek, SeekFrom};
 use std::os::fd::BorrowedFd;
 use std::os::unix::fs::FileExt;
 
-use jni::objects::{JByteBuffer, JClass, JFloatArray, JObject, JObjectArray, JString};
+use jni::objects::{IntoAuto as _, JByteBuffer, JClass, JFloatArray, JObject, JObjectArray, JString};
 use jni::sys::{jint, jlong};
 use jni::{Env, JValue, NativeMethod, native_method};
 use rarefy::internal::device::stage::Stage;
@@ -59,9 +59,9 @@ pub const METHODS: &[NativeMethod] = &[
 
 type Done<T> = Result<T, Failure>;
 
-/// The texts of an array.
+/// The texts of an array. Each reference is freed at once: an array may have more of them than a call may hold.
 fn texts(env: &mut Env<'_>, array: &JObjectArray<'_, JString<'_>>) -> Done<Vec<String>> {
-    (0..array.len(env)?).map(|at| Ok(array.get_element(env, at)?.try_to_string(env)?)).collect()
+    (0..array.len(env)?).map(|at| Ok(array.get_element(env, at)?.auto().try_to_string(env)?)).collect()
 }
 
 fn loaded_classes() -> Done<&'static Classes> {
@@ -494,7 +494,9 @@ fn opencl_report<'local>(
     let refused = strings(env, &refused)?;
     let devices = strings(env, &devices)?;
     let skipped = strings(env, &report.skipped)?;
-    let arguments: [&JObject<'_>; 4] = [&library, &refused, &devices, &skipped];
+    let profiles: Vec<&str> = report.devices.iter().map(|d| d.profile.as_str()).collect();
+    let profiles = strings(env, &profiles)?;
+    let arguments: [&JObject<'_>; 5] = [&library, &refused, &devices, &skipped, &profiles];
     let arguments = arguments.map(JValue::Object);
     Ok(env.new_object(&loaded_classes()?.opencl_report, &OPENCL_REPORT.signature, &arguments)?)
 }

@@ -42,6 +42,8 @@ pub struct DeviceSummary {
     pub platform: String,
     /// `gpu`, `cpu` or `other`.
     pub kind: &'static str,
+    /// All that it says of its limits, as JSON in the format of profiles: a file with this text is one.
+    pub profile: String,
 }
 
 /// Looks for OpenCL as opening a device with `options` does, and opens none.
@@ -64,6 +66,8 @@ pub fn report(options: &OpenOptions) -> DeviceReport {
             DeviceKind::Cpu => "cpu",
             DeviceKind::Other => "other",
         },
+        // Texts and numbers alone, which JSON can say.
+        profile: serde_json::to_string_pretty(&device.profile).unwrap_or_default(),
     });
     DeviceReport {
         library: search.accepted.clone(),

@@ -15,13 +15,20 @@ public final class OpenClReport {
   private final List<String> refused;
   private final List<String> devices;
   private final List<String> skipped;
+  private final List<String> profiles;
 
   /** Called by native code. */
-  OpenClReport(@Nullable String library, String[] refused, String[] devices, String[] skipped) {
+  OpenClReport(
+      @Nullable String library,
+      String[] refused,
+      String[] devices,
+      String[] skipped,
+      String[] profiles) {
     this.library = library;
     this.refused = Collections.unmodifiableList(Arrays.asList(refused));
     this.devices = Collections.unmodifiableList(Arrays.asList(devices));
     this.skipped = Collections.unmodifiableList(Arrays.asList(skipped));
+    this.profiles = Collections.unmodifiableList(Arrays.asList(profiles));
   }
 
   /** Looks for OpenCL as {@link RayTracer#open} does with these options; opens nothing. */
@@ -47,6 +54,15 @@ public final class OpenClReport {
   /** Platforms and devices that cannot draw, each with the reason. */
   public List<String> getSkipped() {
     return skipped;
+  }
+
+  /**
+   * All that each device says of its limits, in the order of {@link #getDevices}: JSON in the
+   * format of {@code rarefy devices --json}. A file with one of these texts is a profile, so that a
+   * phone can be imitated on a desktop.
+   */
+  public List<String> getProfiles() {
+    return profiles;
   }
 
   @Override

@@ -29,6 +29,12 @@ final class PictureTest {
       OpenClReport report = OpenClReport.look(OpenOptions.defaults());
       boolean opencl = report.getLibrary() != null && !report.getDevices().isEmpty();
       Check.that(opencl || device.equals("cpu"), report.toString());
+      Check.equal(report.getDevices().size(), report.getProfiles().size());
+      for (int at = 0; at < report.getProfiles().size(); at++) {
+        String name = report.getDevices().get(at).split(", ")[0];
+        String profile = report.getProfiles().get(at);
+        Check.that(profile.contains(name) && profile.contains("\"limits\": {"), profile);
+      }
       byte[] balanced = Check.draw(tracer, RenderOptions.defaults(), 96, 64);
       Check.write(out + "balanced", balanced);
       RenderOptions fast =
