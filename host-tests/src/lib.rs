@@ -10,5 +10,6 @@ pub mod details;
 pub mod fixtures;
 pub mod frames;
 pub mod fuzz;
+pub mod jdk;
 pub mod masks;
 pub mod option_space;

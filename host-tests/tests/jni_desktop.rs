@@ -8,56 +8,25 @@
 
 #![allow(clippy::unwrap_used)]
 
-use std::ffi::OsString;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::Output;
 use std::sync::OnceLock;
 
 use rarefy_host_tests::clang::{clang, driver_library};
 use rarefy_host_tests::command::{rarefy_in, root};
 use rarefy_host_tests::frames::no_opencl;
+use rarefy_host_tests::jdk::{self, all_text, built_library, java_files, jni_complaints};
 
-/// The Java tools of this machine.
-struct Jdk {
-    javac: PathBuf,
-    java: PathBuf,
-    /// Keeps signal handlers in order between the Java VM and libraries that install their own; part of most JDKs.
-    libjsig: Option<PathBuf>,
-}
+/// The Java tools, for the library's own tests.
+struct Jdk(jdk::Jdk);
 
 impl Jdk {
-    /// The JDK in `JAVA_HOME`, else on `PATH`; `None` if the environment waives these tests.
     fn find() -> Option<Jdk> {
-        if std::env::var_os("RAREFY_TEST_JVM").is_some_and(|v| v == "none") {
-            println!("skipped: RAREFY_TEST_JVM=none");
-            return None;
-        }
-        let mut folders = Vec::new();
-        folders.extend(std::env::var_os("JAVA_HOME").map(|home| Path::new(&home).join("bin")));
-        folders.extend(std::env::var_os("PATH").iter().flat_map(std::env::split_paths));
-        let Some(javac) = folders.iter().map(|folder| folder.join("javac")).find(|file| file.is_file()) else {
-            panic!(
-                "no JDK: `javac` is neither in JAVA_HOME nor on PATH. Install one (Debian, Ubuntu: \
-                 `apt-get install default-jdk-headless`) or waive these tests with RAREFY_TEST_JVM=none"
-            );
-        };
-        // The real folder of the JDK, behind the links in /usr/bin: it holds a matching `java` and libjsig.
-        let bin = javac.canonicalize().unwrap().parent().unwrap().to_path_buf();
-        let libjsig = bin.parent().map(|home| home.join("lib/libjsig.so")).filter(|file| file.is_file());
-        Some(Jdk { javac, java: bin.join("java"), libjsig })
+        jdk::Jdk::find().map(Jdk)
     }
 
-    /// Compiles `sources` into `classes`, with warnings being errors, as Java 8 (what Android takes everywhere).
     fn compile(&self, sources: &[PathBuf], classes: &Path) {
-        let mut javac = Command::new(&self.javac);
-        // `try`: the tests close tracers early on purpose.
-        javac
-            .args(["--release", "8", "-Xlint:all,-options,-try", "-Werror", "-cp"])
-            .arg(classes)
-            .arg("-d")
-            .arg(classes);
-        let output = javac.args(sources).output().unwrap();
-        assert!(output.status.success(), "{javac:?}\n{}", String::from_utf8_lossy(&output.stderr));
+        self.0.compile(sources, classes);
     }
 
     /// Runs a class of `dev.rarefy` under `-Xcheck:jni`; returns all that it printed.
@@ -70,21 +39,9 @@ impl Jdk {
 
     /// As [`Jdk::run`], whatever becomes of it.
     fn output(&self, classes: &Path, class: &str, arguments: &[&str], variables: &[(&str, &str)]) -> Output {
-        let mut java = Command::new(&self.java);
-        if let Some(libjsig) = &self.libjsig {
-            java.env("LD_PRELOAD", libjsig);
-        }
-        let property = |name: &str, file: &str| {
-            let mut property = OsString::from(format!("-D{name}="));
-            property.push(built_library(file));
-            property
-        };
-        java.args(["-Xcheck:jni", "-Xshare:auto", "-Xmx512m", "-Dfile.encoding=UTF-8"]);
-        java.arg(property("dev.rarefy.library", "librarefy_jni.so"));
-        java.arg(property("dev.rarefy.probe", "examples/libguard_probe.so"));
-        java.arg(format!("-Ddev.rarefy.classes={}", self::classes(self).display()));
-        java.arg("-cp").arg(classes).arg(format!("dev.rarefy.{class}")).args(arguments);
-        java.envs(variables.iter().copied()).output().unwrap()
+        let probe = built_library("examples/libguard_probe.so");
+        let properties = [("dev.rarefy.probe", &*probe), ("dev.rarefy.classes", self::classes(self))];
+        self.0.output(classes, &format!("dev.rarefy.{class}"), &properties, arguments, variables)
     }
 
     /// Runs one of the Java tests, which must come to its end and break no rule of JNI.
@@ -110,21 +67,6 @@ impl Jdk {
     }
 }
 
-/// Standard output, then standard error.
-fn all_text(output: &Output) -> String {
-    [&output.stdout, &output.stderr].map(|text| String::from_utf8_lossy(text).into_owned()).concat()
-}
-
-/// The Java files in a folder; of the library those that do not need Android's classes.
-fn java_files(folder: &str) -> Vec<PathBuf> {
-    let files = root().join(folder).read_dir().unwrap().map(|entry| entry.unwrap().path());
-    let mut files: Vec<PathBuf> =
-        files.filter(|file| !std::fs::read_to_string(file).unwrap().contains("\nimport android.")).collect();
-    files.sort();
-    assert!(!files.is_empty(), "{folder}");
-    files
-}
-
 /// The library and its tests, compiled once.
 fn classes(jdk: &Jdk) -> &'static Path {
     static CLASSES: OnceLock<tempfile::TempDir> = OnceLock::new();
@@ -137,33 +79,6 @@ fn classes(jdk: &Jdk) -> &'static Path {
         folder
     });
     folder.path()
-}
-
-/// A library that cargo built beside this test, not older than its sources.
-fn built_library(name: &str) -> PathBuf {
-    let test = std::env::current_exe().unwrap();
-    let folder = test.parent().unwrap().parent().unwrap();
-    let library = folder.join(name);
-    let remedy = "build it: `cargo build --workspace && cargo build --workspace --examples` (with --release for a \
-                  release test)";
-    let Ok(built) = library.metadata().and_then(|m| m.modified()) else {
-        panic!("{} is not here; {remedy}", library.display());
-    };
-    for folder in ["android/jni/src", "android/jni/examples"] {
-        for source in root().join(folder).read_dir().unwrap() {
-            let source = source.unwrap();
-            let part_of_it = folder.ends_with("src") || name.contains("probe");
-            let stale = part_of_it && source.metadata().unwrap().modified().unwrap() > built;
-            assert!(!stale, "{} is older than {}; {remedy}", library.display(), source.path().display());
-        }
-    }
-    library
-}
-
-/// What `-Xcheck:jni` found wrong; it does not change the exit status.
-fn jni_complaints(output: &str) -> Vec<&str> {
-    const MARKS: [&str; 4] = ["WARNING in native", "FATAL ERROR", "WARNING: JNI", "handler was modified"];
-    output.lines().filter(|line| MARKS.iter().any(|mark| line.contains(mark))).collect()
 }
 
 /// Writes `text` as `NAME.java` into `folder`.

@@ -9,9 +9,10 @@ import org.jspecify.annotations.Nullable;
 
 /** What this app is, and what devices the phone has. */
 public final class AboutActivity extends Activity {
-  private static final String REPORT = "report";
+  private static final String SUMMARY = "summary";
+  private static final String ALL = "all";
 
-  private @Nullable String report;
+  private Reports.@Nullable Report report;
 
   @Override
   protected void onCreate(@Nullable Bundle state) {
@@ -19,9 +20,10 @@ public final class AboutActivity extends Activity {
     setContentView(R.layout.about);
     EdgeToEdge.draw(getWindow());
     EdgeToEdge.pad(findViewById(R.id.about_root));
-    String kept = state == null ? null : state.getString(REPORT);
-    if (kept != null) {
-      show(kept);
+    String summary = state == null ? null : state.getString(SUMMARY);
+    String all = state == null ? null : state.getString(ALL);
+    if (summary != null && all != null) {
+      show(new Reports.Report(summary, all));
     } else {
       look();
     }
@@ -31,25 +33,30 @@ public final class AboutActivity extends Activity {
     Thread thread =
         new Thread(
             () -> {
-              String text = Reports.device(getApplicationContext(), null, null);
-              runOnUiThread(() -> show(text));
+              Reports.Report found = Reports.device(getApplicationContext(), null, null);
+              runOnUiThread(() -> show(found));
             },
             "rarefy-report");
     thread.start();
   }
 
-  private void show(String text) {
-    report = text;
+  private void show(Reports.Report found) {
+    report = found;
     TextView view = findViewById(R.id.about_report);
-    view.setText(text);
+    view.setText(found.summary);
     View share = findViewById(R.id.about_share);
     share.setEnabled(true);
-    share.setOnClickListener(button -> Reports.share(this, getString(R.string.about_device), text));
+    share.setOnClickListener(
+        button -> Reports.share(this, getString(R.string.about_device), found.all));
   }
 
   @Override
   protected void onSaveInstanceState(Bundle state) {
     super.onSaveInstanceState(state);
-    state.putString(REPORT, report);
+    Reports.Report found = report;
+    if (found != null) {
+      state.putString(SUMMARY, found.summary);
+      state.putString(ALL, found.all);
+    }
   }
 }

@@ -4,6 +4,7 @@ package dev.rarefy.demo;
 import android.annotation.SuppressLint;
 import android.app.Activity;
 import android.content.Intent;
+import android.graphics.PixelFormat;
 import android.net.Uri;
 import android.os.Bundle;
 import android.os.Handler;
@@ -89,6 +90,8 @@ public final class MainActivity extends Activity implements SurfaceHolder.Callba
     SurfaceView picture = findViewById(R.id.picture);
     picture.setOnTouchListener(input);
     picture.setOnKeyListener(input);
+    // What a surface has else may be 16 bits, in which skies have bands.
+    picture.getHolder().setFormat(PixelFormat.RGBX_8888);
     picture.getHolder().addCallback(this);
     buttons();
     showPanel(saved.panel);

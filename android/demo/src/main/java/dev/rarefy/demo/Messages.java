@@ -83,6 +83,7 @@ final class Messages {
     boolean measures = state.phase() == State.Phase.BENCHMARK;
     progress.setVisibility(visible(opens || measures));
     progressCancel.setVisibility(visible(measures));
+    progress.setKeepScreenOn(measures);
     int id = measures ? R.string.benchmark_running : R.string.opening;
     set(progressText, activity.getString(id, texts.scene(state.scene())));
     progressBar.setProgress(Math.round(state.progress() * progressBar.getMax()));
@@ -133,7 +134,7 @@ final class Messages {
     Thread thread =
         new Thread(
             () -> {
-              String text = Reports.device(activity, state.device(), state.failure());
+              String text = Reports.device(activity, state.device(), state.failure()).all;
               activity.runOnUiThread(() -> Reports.share(activity, subject, text));
             },
             "rarefy-report");

@@ -18,6 +18,7 @@ import dev.rarefy.demo.logic.Settings;
 import dev.rarefy.demo.logic.Shown;
 import dev.rarefy.demo.logic.Tolerance;
 import java.util.ArrayList;
+import java.util.Arrays;
 import java.util.EnumMap;
 import java.util.List;
 import java.util.Map;
@@ -35,9 +36,29 @@ final class Panel {
     void dragging(boolean dragging);
   }
 
-  /** A choice of a list, by its place. */
-  private interface Choice {
-    void chosen(int at);
+  /** What a value of a list is called. */
+  private interface Naming<T extends @Nullable Object> {
+    String name(T value);
+  }
+
+  /** A value of a list was chosen. */
+  private interface Choice<T extends @Nullable Object> {
+    void chosen(T value);
+  }
+
+  private static final List<Settings.Mode> MODES = Arrays.asList(Settings.Mode.values());
+  private static final List<RenderOptions.Method> METHODS =
+      Arrays.asList(RenderOptions.Method.values());
+  private static final List<Shown> LAYERS = Arrays.asList(Shown.values());
+
+  /** First null, for what the method says. */
+  private static final List<RenderOptions.@Nullable Correction> CORRECTIONS = corrections();
+
+  private static List<RenderOptions.@Nullable Correction> corrections() {
+    List<RenderOptions.@Nullable Correction> corrections = new ArrayList<>();
+    corrections.add(null);
+    corrections.addAll(Arrays.asList(RenderOptions.Correction.values()));
+    return corrections;
   }
 
   private final View root;
@@ -65,13 +86,12 @@ final class Panel {
   /** Shows other settings, which changes nothing but the controls. */
   void show(Settings settings) {
     this.settings = settings;
-    select(R.id.mode, settings.mode().ordinal());
-    select(R.id.method, settings.method().ordinal());
-    select(R.id.layer, settings.shown().ordinal());
-    select(R.id.samples, indexOf(Settings.SAMPLES, settings.samples()));
-    RenderOptions.Correction correction = settings.correction();
-    select(R.id.correction, correction == null ? 0 : correction.ordinal() + 1);
-    select(R.id.resolution, indexOf(Settings.RESOLUTIONS, settings.resolution()));
+    select(R.id.mode, MODES.indexOf(settings.mode()));
+    select(R.id.method, METHODS.indexOf(settings.method()));
+    select(R.id.layer, LAYERS.indexOf(settings.shown()));
+    select(R.id.samples, Settings.SAMPLES.indexOf(settings.samples()));
+    select(R.id.correction, CORRECTIONS.indexOf(settings.correction()));
+    select(R.id.resolution, Settings.RESOLUTIONS.indexOf(settings.resolution()));
     for (Tolerance tolerance : Tolerance.values()) {
       show(tolerance);
     }
@@ -85,11 +105,7 @@ final class Panel {
       if (!scenes.contains(scene)) {
         scenes.add(scene);
       }
-      List<String> names = new ArrayList<>();
-      for (SceneChoice each : scenes) {
-        names.add(texts.scene(each));
-      }
-      list(R.id.scene, names, at -> listener.chosen(scenes.get(at)));
+      list(R.id.scene, new ArrayList<>(scenes), texts::scene, listener::chosen);
     }
     select(R.id.scene, scenes.indexOf(scene));
   }
@@ -102,50 +118,32 @@ final class Panel {
   }
 
   private void lists() {
-    List<String> modes = new ArrayList<>();
-    for (Settings.Mode mode : Settings.Mode.values()) {
-      modes.add(texts.mode(mode));
-    }
-    list(R.id.mode, modes, at -> change(settings.withMode(Settings.Mode.values()[at])));
-    List<String> methods = new ArrayList<>();
-    for (RenderOptions.Method method : RenderOptions.Method.values()) {
-      methods.add(texts.method(method));
-    }
+    list(R.id.mode, MODES, texts::mode, mode -> change(settings.withMode(mode)));
+    list(R.id.method, METHODS, texts::method, method -> change(settings.withMethod(method)));
+    list(R.id.layer, LAYERS, texts::shown, shown -> change(settings.withShown(shown)));
     list(
-        R.id.method, methods, at -> change(settings.withMethod(RenderOptions.Method.values()[at])));
-    List<String> layers = new ArrayList<>();
-    for (Shown shown : Shown.values()) {
-      layers.add(texts.shown(shown));
-    }
-    list(R.id.layer, layers, at -> change(settings.withShown(Shown.values()[at])));
-    List<String> samples = new ArrayList<>();
-    for (int each : Settings.SAMPLES) {
-      samples.add(String.format(texts.locale(), "%d", each * each));
-    }
-    list(R.id.samples, samples, at -> change(settings.withSamples(Settings.SAMPLES[at])));
-    List<String> corrections = new ArrayList<>();
-    corrections.add(texts.correction(null));
-    for (RenderOptions.Correction correction : RenderOptions.Correction.values()) {
-      corrections.add(texts.correction(correction));
-    }
+        R.id.samples,
+        Settings.SAMPLES,
+        each -> String.format(texts.locale(), "%d", each * each),
+        each -> change(settings.withSamples(each)));
     list(
         R.id.correction,
-        corrections,
-        at ->
-            change(
-                settings.withCorrection(
-                    at == 0 ? null : RenderOptions.Correction.values()[at - 1])));
-    List<String> resolutions = new ArrayList<>();
-    for (int percent : Settings.RESOLUTIONS) {
-      resolutions.add(overlay.percent(percent / 100.0));
-    }
+        CORRECTIONS,
+        texts::correction,
+        correction -> change(settings.withCorrection(correction)));
     list(
         R.id.resolution,
-        resolutions,
-        at -> change(settings.withResolution(Settings.RESOLUTIONS[at])));
+        Settings.RESOLUTIONS,
+        percent -> overlay.percent(percent / 100.0),
+        percent -> change(settings.withResolution(percent)));
   }
 
-  private void list(int id, List<String> names, Choice choice) {
+  private <T extends @Nullable Object> void list(
+      int id, List<T> values, Naming<T> naming, Choice<T> choice) {
+    List<String> names = new ArrayList<>();
+    for (T value : values) {
+      names.add(naming.name(value));
+    }
     Spinner spinner = root.findViewById(id);
     ArrayAdapter<String> adapter = new ArrayAdapter<>(root.getContext(), R.layout.choice, names);
     adapter.setDropDownViewResource(R.layout.choice_listed);
@@ -154,7 +152,7 @@ final class Panel {
         new AdapterView.OnItemSelectedListener() {
           @Override
           public void onItemSelected(AdapterView<?> parent, @Nullable View view, int at, long row) {
-            choice.chosen(at);
+            choice.chosen(values.get(at));
           }
 
           @Override
@@ -218,14 +216,5 @@ final class Panel {
     bar.setContentDescription(text);
     bar.setProgress(tolerance.stepOf(settings.tolerance(tolerance)));
     row.findViewById(R.id.tolerance_reset).setEnabled(set);
-  }
-
-  private static int indexOf(int[] values, int value) {
-    for (int at = 0; at < values.length; at++) {
-      if (values[at] == value) {
-        return at;
-      }
-    }
-    return 0;
   }
 }

@@ -22,8 +22,22 @@ import org.jspecify.annotations.Nullable;
 final class Reports {
   private Reports() {}
 
+  /** A report of this phone. */
+  static final class Report {
+    /** What one can read on a screen. */
+    final String summary;
+
+    /** That, and all limits of all devices. */
+    final String all;
+
+    Report(String summary, String all) {
+      this.summary = summary;
+      this.all = all;
+    }
+  }
+
   /** A report of this phone. Looks for OpenCL, which takes a while: not on the main thread. */
-  static String device(Context context, @Nullable DeviceInfo device, @Nullable Failure failure) {
+  static Report device(Context context, @Nullable DeviceInfo device, @Nullable Failure failure) {
     Map<String, String> phone = new LinkedHashMap<>();
     phone.put("phone", Build.MANUFACTURER + " " + Build.MODEL);
     phone.put("board", Build.BOARD + ", " + Build.HARDWARE);
@@ -42,7 +56,8 @@ final class Reports {
     } catch (LinkageError e) {
       version = "the native library does not load: " + e;
     }
-    return DeviceReport.text(phone, version, report, device, failure);
+    String summary = DeviceReport.text(phone, version, report, device, failure);
+    return new Report(summary, summary + DeviceReport.profiles(report));
   }
 
   /** Lets the user choose an app that takes this text. */

@@ -54,6 +54,17 @@ public final class DeviceReport {
     return text.toString();
   }
 
+  /** What each device says of its limits, as JSON, which the project keeps as a profile. */
+  public static String profiles(@Nullable OpenClReport openCl) {
+    StringBuilder text = new StringBuilder();
+    if (openCl != null) {
+      for (String profile : openCl.getProfiles()) {
+        text.append("\nprofile:\n").append(profile).append('\n');
+      }
+    }
+    return text.toString();
+  }
+
   private static void lines(StringBuilder text, String name, List<String> values) {
     for (String value : values) {
       line(text, name, value);

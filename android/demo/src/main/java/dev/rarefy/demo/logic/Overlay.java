@@ -90,11 +90,11 @@ public final class Overlay {
     }
     RayTracerException crash = crashed(device);
     if (crash != null) {
-      return words.say(Words.Word.DRIVER_CRASHED, crash.getMessage());
+      return words.say(Words.Word.DRIVER_CRASHED, sentence(crash));
     }
     for (RayTracerException passed : device.getPassedOver()) {
       if (passed.getCode() != RayTracerException.Code.NO_OPENCL) {
-        return words.say(Words.Word.DRIVER_FAILED, passed.getMessage());
+        return words.say(Words.Word.DRIVER_FAILED, sentence(passed));
       }
     }
     return null;
@@ -127,6 +127,11 @@ public final class Overlay {
         return Words.Word.METHOD_PAPER;
     }
     throw new AssertionError(method);
+  }
+
+  /** The library's exceptions always have one, which Java does not know. */
+  private static String sentence(RayTracerException e) {
+    return String.valueOf(e.getMessage());
   }
 
   private String sentence(Failure failure, String sceneName) {

@@ -303,7 +303,7 @@ public final class RenderLoop extends Schedule {
       info = drew;
       drawnSettings = how;
       drawn = startedWith;
-      composed = false;
+      composeWanted++;
     }
     show();
   }
@@ -312,10 +312,11 @@ public final class RenderLoop extends Schedule {
   private void show() {
     Screen on;
     Settings how;
+    int compose;
     synchronized (lock) {
       on = screen;
       how = drawnSettings.withDivider(settings.divider());
-      composed = true;
+      compose = composeWanted;
     }
     if (!frames.isReady()) {
       // Cancelled midway: what was on the screen is half overwritten.
@@ -326,6 +327,7 @@ public final class RenderLoop extends Schedule {
       on.show(frames.compose(how), frames.width(), frames.height());
     }
     synchronized (lock) {
+      composed = compose;
       doneNanos = System.nanoTime();
     }
   }

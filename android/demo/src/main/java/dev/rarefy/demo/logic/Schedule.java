@@ -60,7 +60,11 @@ abstract class Schedule {
   int startedWith;
   int drawn;
   int measured;
-  boolean composed;
+
+  /** Counts what makes the same frame look otherwise; likewise. */
+  int composeWanted = 1;
+
+  int composed;
   boolean dropBuffers;
   long doneNanos;
   final Resolution resolution = new Resolution();
@@ -86,7 +90,7 @@ abstract class Schedule {
       this.screen = screen;
       screenWidth = width;
       screenHeight = height;
-      composed = false;
+      composeWanted++;
       changed(resized);
     }
   }
@@ -148,7 +152,7 @@ abstract class Schedule {
   public void setSettings(Settings settings) {
     synchronized (lock) {
       boolean other = !settings.drawsAs(this.settings);
-      composed &= settings.equals(this.settings);
+      composeWanted += settings.equals(this.settings) ? 0 : 1;
       if (settings.resolution() != this.settings.resolution()) {
         resolution.restore();
       }
@@ -289,7 +293,7 @@ abstract class Schedule {
   }
 
   private boolean isDone() {
-    return drawn == wanted && composed && info != null && info.isRefined();
+    return drawn == wanted && composed == composeWanted && info != null && info.isRefined();
   }
 
   void tell() {
@@ -346,7 +350,7 @@ abstract class Schedule {
       return null;
     } else if (drawn != wanted) {
       return moving || resolution.coarse() < 1 ? Task.COARSE : Task.REFINED;
-    } else if (!composed) {
+    } else if (composed != composeWanted) {
       return Task.COMPOSE;
     } else if (!moving && info != null && !info.isRefined()) {
       return Task.REFINED;

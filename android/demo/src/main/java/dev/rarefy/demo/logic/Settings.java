@@ -4,9 +4,11 @@ package dev.rarefy.demo.logic;
 import dev.rarefy.RenderOptions;
 import dev.rarefy.RenderOptions.Correction;
 import dev.rarefy.RenderOptions.Method;
+import java.util.Arrays;
 import java.util.Collections;
 import java.util.EnumMap;
 import java.util.LinkedHashMap;
+import java.util.List;
 import java.util.Locale;
 import java.util.Map;
 import java.util.Objects;
@@ -23,10 +25,11 @@ public final class Settings {
   }
 
   /** Samples per pixel and axis. */
-  public static final int[] SAMPLES = {1, 2, 4};
+  public static final List<Integer> SAMPLES = Collections.unmodifiableList(Arrays.asList(1, 2, 4));
 
   /** Percent of the screen's width and height that are drawn. */
-  public static final int[] RESOLUTIONS = {25, 50, 75, 100};
+  public static final List<Integer> RESOLUTIONS =
+      Collections.unmodifiableList(Arrays.asList(25, 50, 75, 100));
 
   private static final Settings DEFAULTS =
       new Settings(
@@ -126,7 +129,7 @@ public final class Settings {
   /** Another place of the divider, from 0 to 1; what is outside goes to the border. */
   public Settings withDivider(float divider) {
     // NaN goes to the middle.
-    float inside = divider == divider ? Math.max(0, Math.min(1, divider)) : 0.5f;
+    float inside = Float.isNaN(divider) ? 0.5f : Math.max(0, Math.min(1, divider));
     return new Settings(mode, inside, shown, method, samples, correction, resolution, tolerances);
   }
 
@@ -142,7 +145,7 @@ public final class Settings {
 
   /** Other samples; what is not one of {@link #SAMPLES} changes nothing. */
   public Settings withSamples(int samples) {
-    int allowed = contains(SAMPLES, samples) ? samples : this.samples;
+    int allowed = SAMPLES.contains(samples) ? samples : this.samples;
     return new Settings(mode, divider, shown, method, allowed, correction, resolution, tolerances);
   }
 
@@ -153,7 +156,7 @@ public final class Settings {
 
   /** Another resolution; what is not one of {@link #RESOLUTIONS} changes nothing. */
   public Settings withResolution(int percent) {
-    int allowed = contains(RESOLUTIONS, percent) ? percent : resolution;
+    int allowed = RESOLUTIONS.contains(percent) ? percent : resolution;
     return new Settings(mode, divider, shown, method, samples, correction, allowed, tolerances);
   }
 
@@ -225,15 +228,6 @@ public final class Settings {
       settings = settings.withTolerance(tolerance, number(map.get(tolerance.key()), Float.NaN));
     }
     return settings;
-  }
-
-  private static boolean contains(int[] values, int value) {
-    for (int allowed : values) {
-      if (allowed == value) {
-        return true;
-      }
-    }
-    return false;
   }
 
   private static <E extends Enum<E>> E constant(Class<E> of, @Nullable String name, E otherwise) {

@@ -11,13 +11,13 @@ public enum Tolerance {
   /** Largest distance, as a share of the scene's size. */
   T_POS(0, 0.3f, 0.06f, 0.03f, 0.03f),
   /** Least dot product of normals. */
-  T_NORM(0, 1, 0.9f, 0.95f, 0.9f),
+  T_NORM(0, 1, 0.9f, 0.9f, 0.9f),
   /** Sine of the slope below which a surface counts as flat. */
-  T_CONV(0, 1, 0.2f, 0.05f, 0.05f),
+  T_CONV(0, 1, 0.2f, 0.2f, 0.05f),
   /** How far apart texture coordinates may be. */
   T_TEX(0, 1, 0.5f, 0.5f, 0.3f),
   /** Largest distance of reflected colours. */
-  T_GCOL(0, 0.5f, 0.05f, 0.06f, 0.15f);
+  T_GCOL(0, 0.5f, 0.05f, 0.09f, 0.15f);
 
   /** How many steps a slider has. */
   public static final int STEPS = 200;

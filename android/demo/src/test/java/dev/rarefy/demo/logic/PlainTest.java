@@ -79,6 +79,7 @@ public final class PlainTest {
       Check.equal(folder.getCanonicalFile(), file.getCanonicalFile().getParentFile());
       Check.that(file.isFile() && !file.isHidden(), choice.name());
     }
+    Check.equal("b.obj", copied(folder, "a/b.obj", "v", 100).shortName());
     String before = folder.list()[0];
     Check.thrown(OpenedFile.TooLarge.class, () -> copied(folder, "large", "12345678901", 10));
     Check.equal(Arrays.asList(before), Arrays.asList(folder.list()));
