@@ -293,7 +293,13 @@ abstract class Schedule {
   }
 
   private boolean isDone() {
-    return drawn == wanted && composed == composeWanted && info != null && info.isRefined();
+    // A task that draws or composes has not yet brought its picture to the screen.
+    boolean shown = task == null || task == Task.MEASURE;
+    return shown
+        && drawn == wanted
+        && composed == composeWanted
+        && info != null
+        && info.isRefined();
   }
 
   void tell() {
