@@ -8,7 +8,7 @@ demo=android/demo
 demo_package=dev.rarefy.demo
 demo_version_code=1
 # The scenes among the app's assets, written by `rarefy make-scene`.
-demo_scenes="cafe mirror-room"
+demo_scenes="kitchen bathroom"
 apk_limit=$((25 * 1024 * 1024))
 
 demo_sources() { find "$demo/src/main/java" -name '*.java' | LC_ALL=C sort; }

@@ -74,6 +74,16 @@ fn gradle_says_of_the_demo_app_what_its_script_says() {
     assert!(demo.contains("check_lint") && text("android/check/lint.sh").contains(between(&gradle, "file(\"", "\"")));
     let plugin = |gradle: &str| between(gradle, ") version \"", "\"").to_owned();
     assert_eq!(plugin(&gradle), plugin(&text("android/library/build.gradle.kts")));
+    // The scenes among the assets are built-in ones, and those that the app's list takes from its assets.
+    let listed: Vec<&str> =
+        between(&gradle, "val scenes = listOf(", ")").split(", ").map(|scene| scene.trim_matches('"')).collect();
+    assert_eq!(listed.join(" "), between(&demo, "\ndemo_scenes=\"", "\""));
+    let choices = text("android/demo/src/main/java/dev/rarefy/demo/logic/SceneChoice.java");
+    for scene in &listed {
+        assert!(rarefy::builtin(scene).is_ok(), "{scene}");
+        assert!(choices.contains(&format!("Kind.ASSET, \"{scene}\"")), "{scene}");
+    }
+    assert_eq!(choices.matches("new SceneChoice(Kind.ASSET, \"").count(), listed.len());
 }
 
 /// The names in brackets of a Java enum's constants.
