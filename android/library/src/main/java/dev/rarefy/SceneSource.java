@@ -29,7 +29,10 @@ public abstract class SceneSource {
     };
   }
 
-  /** A scene that comes with the library: cafe, kitchen, bathroom, spheres, rods, mirror-room or wall. */
+  /**
+   * A scene that comes with the library: cafe, kitchen, bathroom, spheres, rods, mirror-room or
+   * wall.
+   */
   public static SceneSource builtin(String name) {
     Objects.requireNonNull(name, "name");
     return new SceneSource(name) {

@@ -7,6 +7,7 @@ import android.graphics.Paint;
 import android.graphics.Rect;
 import android.view.SurfaceHolder;
 import dev.rarefy.demo.logic.Screen;
+import java.nio.Buffer;
 import java.nio.ByteBuffer;
 import org.jspecify.annotations.Nullable;
 
@@ -39,7 +40,8 @@ final class SurfaceScreen implements Screen {
       bitmap = picture;
     }
     ByteBuffer pixels = rgba.duplicate();
-    pixels.rewind();
+    // A ByteBuffer's own rewind is newer than API 23.
+    ((Buffer) pixels).rewind();
     picture.copyPixelsFromBuffer(pixels);
     Canvas canvas;
     try {
