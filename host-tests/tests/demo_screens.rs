@@ -37,5 +37,5 @@ fn the_first_screens_are_as_stored_and_a_finger_turns_the_camera() {
 #[test]
 #[ignore = "long: every screen of the demo app, on Android 6, 14 and 15"]
 fn every_screen_and_what_android_does_to_an_app() {
-    screens("long", 28);
+    screens("long", 27);
 }
