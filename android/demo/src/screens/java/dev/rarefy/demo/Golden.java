@@ -18,8 +18,8 @@ final class Golden {
   /** Steps of 255 by which a channel of a pixel may differ. */
   private static final int MOST_STEPS = 24;
 
-  /** Share of the pixels that may differ by more. */
-  private static final double MOST_PIXELS = 0.004;
+  /** Share of the pixels that may differ by more: less than a word has. */
+  private static final double MOST_PIXELS = 0.0005;
 
   private static final File STORED = new File(System.getProperty("rarefy.screens.golden"));
   private static final File SEEN = new File(System.getProperty("rarefy.screens.out"));
@@ -55,10 +55,10 @@ final class Golden {
               + new File(SEEN, name + ".png")
               + ", and android/screens.sh bless if that is right");
     }
-    // The control: the same screen with a label's worth of other pixels is not taken for it.
+    // The control: the same screen with a word's worth of other pixels is not taken for it.
     Bitmap changed = small.copy(Bitmap.Config.ARGB_8888, true);
-    int width = changed.getWidth() / 4;
-    for (int y = 0; y < changed.getHeight() / 40; y++) {
+    int width = changed.getWidth() / 8;
+    for (int y = 0; y < changed.getHeight() / 80; y++) {
       for (int x = 0; x < width; x++) {
         int at = changed.getPixel(x + width, y + changed.getHeight() / 2);
         changed.setPixel(x + width, y + changed.getHeight() / 2, at ^ 0x00808080);
