@@ -4,14 +4,18 @@
 //! Each scene has a folder `scenes/NAME` with its `view.json` and the parameters of its generator; both are part of
 //! the library. The generators use `+ - * /` and square roots alone, so that every platform makes the same bytes.
 
+#[cfg(feature = "rooms")]
 pub mod bathroom;
 pub mod cafe;
 mod convert;
 mod export;
+#[cfg(feature = "rooms")]
 pub mod kitchen;
 pub mod mesh;
 mod model;
 pub mod paint;
+// Without the rooms, the café uses a few of them.
+#[cfg_attr(not(feature = "rooms"), allow(dead_code))]
 pub mod parts;
 pub mod tiny;
 
@@ -26,6 +30,11 @@ use crate::error::Setting;
 use crate::{Error, Result, Scene};
 
 /// The names of all built-in scenes.
+#[cfg(not(feature = "rooms"))]
+pub const NAMES: [&str; 5] = ["cafe", "wall", "spheres", "rods", "mirror-room"];
+
+/// The names of all built-in scenes.
+#[cfg(feature = "rooms")]
 pub const NAMES: [&str; 7] = ["cafe", "kitchen", "bathroom", "wall", "spheres", "rods", "mirror-room"];
 
 /// Makes a built-in scene.
@@ -38,10 +47,12 @@ pub fn generate(name: &str) -> Result<Model> {
             &parameters(name, include_str!("../../../scenes/cafe/parameters.json"))?,
             include_str!("../../../scenes/cafe/view.json"),
         )?,
+        #[cfg(feature = "rooms")]
         "kitchen" => kitchen::generate(
             &parameters(name, include_str!("../../../scenes/kitchen/parameters.json"))?,
             include_str!("../../../scenes/kitchen/view.json"),
         )?,
+        #[cfg(feature = "rooms")]
         "bathroom" => bathroom::generate(
             &parameters(name, include_str!("../../../scenes/bathroom/parameters.json"))?,
             include_str!("../../../scenes/bathroom/view.json"),
@@ -103,7 +114,7 @@ fn check(scene: &str, key: &str, value: f32, range: std::ops::RangeInclusive<f32
     Err(Error::scene(format!("scenes/{scene}/parameters.json"), message))
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "rooms"))]
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;

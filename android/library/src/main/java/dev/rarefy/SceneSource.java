@@ -30,8 +30,8 @@ public abstract class SceneSource {
   }
 
   /**
-   * A scene that comes with the library: cafe, kitchen, bathroom, spheres, rods, mirror-room or
-   * wall.
+   * A scene that comes with the library: cafe, spheres, rods, mirror-room or wall. The desktop's
+   * kitchen and bathroom are not in it; write them as files and make them assets.
    */
   public static SceneSource builtin(String name) {
     Objects.requireNonNull(name, "name");
