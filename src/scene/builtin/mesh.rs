@@ -450,40 +450,7 @@ pub fn unit(bits: u32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::collections::HashMap;
-
-    /// How many directed edges lack an opposite one, by position.
-    pub fn open_edges(mesh: &Mesh) -> usize {
-        let key = |i: u32| mesh.positions[i as usize].to_array().map(|v| (v + 0.0).to_bits());
-        let mut edges: HashMap<_, i32> = HashMap::new();
-        for t in &mesh.triangles {
-            for k in 0..3 {
-                let (a, b) = (key(t[k]), key(t[(k + 1) % 3]));
-                *edges.entry((a, b)).or_default() += 1;
-                *edges.entry((b, a)).or_default() -= 1;
-            }
-        }
-        edges.values().filter(|&&n| n != 0).count()
-    }
-
-    /// Six times the enclosed volume: positive if the shape faces outwards.
-    fn volume(mesh: &Mesh) -> f32 {
-        let p = |i: u32| mesh.positions[i as usize];
-        mesh.triangles.iter().map(|t| p(t[0]).dot(p(t[1]).cross(p(t[2])))).sum()
-    }
-
-    fn normals_agree(mesh: &Mesh) {
-        for t in &mesh.triangles {
-            let [a, b, c] = t.map(|i| mesh.positions[i as usize]);
-            let face = (b - a).cross(c - a);
-            assert!(face.length() > 0.0, "a triangle without area");
-            for i in t {
-                let n = mesh.normals[*i as usize];
-                assert!((n.length() - 1.0).abs() < 1e-4, "{n} is no unit vector");
-                assert!(face.dot(n) > 0.0, "the normal {n} looks away from its face {face}");
-            }
-        }
-    }
+    use crate::scene::builtin::solid::{normals_agree, open_edges, volume};
 
     #[test]
     fn cosines_and_sines_are_close_to_the_standard_library() {
@@ -526,7 +493,7 @@ mod tests {
 
     #[test]
     fn a_sphere_s_volume_approaches_the_true_one() {
-        let exact = 8.0 * std::f32::consts::PI;
+        let exact = 4.0 / 3.0 * std::f32::consts::PI;
         assert!((volume(&Mesh::sphere(1.0, 64, 32)) / exact - 1.0).abs() < 0.01);
     }
 

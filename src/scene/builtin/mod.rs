@@ -17,6 +17,8 @@ pub mod paint;
 // Without the rooms, the café uses a few of them.
 #[cfg_attr(not(feature = "rooms"), allow(dead_code))]
 pub mod parts;
+#[cfg(test)]
+mod solid;
 pub mod tiny;
 
 use std::path::Path;

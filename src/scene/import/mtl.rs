@@ -4,9 +4,9 @@
 //!
 //! Meaning of the keys, in any letter case: `Kd` diffuse colour; `Ks` highlight, and what a mirror reflects; `Ns`
 //! Blinn-Phong exponent; `Ni` index of refraction; `Tf` colour of light through glass; `d` and `Tr` opacity and
-//! 1 - opacity; `Ke` light of its own; `map_Kd` picture that `Kd` multiplies (options `-s` and `-o` apply); `map_d` (or `map_opacity`) cut-out
-//! mask; `illum` what kind of surface is asked for. What a material becomes of these is decided in [`super::material`].
-//! Every other key is counted.
+//! 1 - opacity; `Ke` light of its own; `map_Kd` picture that `Kd` multiplies (options `-s` and `-o` apply); `map_d` (or
+//! `map_opacity`) cut-out mask; `illum` what kind of surface is asked for. What a material becomes of these is decided in
+//! [`super::material`]. Every other key is counted.
 
 use std::collections::HashMap;
 use std::path::Path;

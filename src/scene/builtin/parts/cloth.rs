@@ -112,26 +112,7 @@ pub fn rolled_towel(long: f32, radius: f32, turns: f32, cells: u32) -> Mesh {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::collections::HashMap;
-
-    /// Directed edges without an opposite one, by position.
-    fn open_edges(mesh: &Mesh) -> usize {
-        let key = |i: u32| mesh.positions[i as usize].to_array().map(|v| (v + 0.0).to_bits());
-        let mut edges: HashMap<_, i32> = HashMap::new();
-        for t in &mesh.triangles {
-            for k in 0..3 {
-                let (a, b) = (key(t[k]), key(t[(k + 1) % 3]));
-                *edges.entry((a, b)).or_default() += 1;
-                *edges.entry((b, a)).or_default() -= 1;
-            }
-        }
-        edges.values().filter(|&&n| n != 0).count()
-    }
-
-    fn volume(mesh: &Mesh) -> f32 {
-        let p = |i: u32| mesh.positions[i as usize];
-        mesh.triangles.iter().map(|t| p(t[0]).dot(p(t[1]).cross(p(t[2])))).sum::<f32>() / 6.0
-    }
+    use crate::scene::builtin::solid::{open_edges, volume};
 
     #[test]
     fn towels_are_closed_bodies_that_face_outwards() {

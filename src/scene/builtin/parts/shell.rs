@@ -144,37 +144,7 @@ pub fn vessel(outside: &[(f32, f32)], thickness: f32, floor: f32) -> Vec<(f32, f
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::collections::HashMap;
-
-    /// How many directed edges lack an opposite one, by position.
-    fn open_edges(mesh: &Mesh) -> usize {
-        let key = |i: u32| mesh.positions[i as usize].to_array().map(|v| (v + 0.0).to_bits());
-        let mut edges: HashMap<_, i32> = HashMap::new();
-        for t in &mesh.triangles {
-            for k in 0..3 {
-                let (a, b) = (key(t[k]), key(t[(k + 1) % 3]));
-                *edges.entry((a, b)).or_default() += 1;
-                *edges.entry((b, a)).or_default() -= 1;
-            }
-        }
-        edges.values().filter(|&&n| n != 0).count()
-    }
-
-    fn volume(mesh: &Mesh) -> f32 {
-        let p = |i: u32| mesh.positions[i as usize];
-        mesh.triangles.iter().map(|t| p(t[0]).dot(p(t[1]).cross(p(t[2])))).sum::<f32>() / 6.0
-    }
-
-    fn normals_agree(mesh: &Mesh) {
-        for t in &mesh.triangles {
-            let [a, b, c] = t.map(|i| mesh.positions[i as usize]);
-            let face = (b - a).cross(c - a);
-            for i in t {
-                let n = mesh.normals[*i as usize];
-                assert!((n.length() - 1.0).abs() < 1e-4 && face.dot(n) > 0.0, "{n} against {face}");
-            }
-        }
-    }
+    use crate::scene::builtin::solid::{normals_agree, open_edges, volume};
 
     #[test]
     fn a_swept_block_is_closed_faces_outwards_and_has_its_volume() {
