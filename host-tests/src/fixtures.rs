@@ -17,7 +17,8 @@ use rarefy::internal::math::pack_normal;
 use rarefy::internal::method::camera::frame_inputs;
 use rarefy::internal::method::counts::Keep;
 use rarefy::internal::method::options::{
-    Checks, Compared, Correction, Method, Mode, RenderOptions, Spread, TextureRule, Tolerances,
+    Checks, Compared, Correction, GcolSpace, Interpolation, Method, Mode, RenderOptions, Spread, TextureRule,
+    Tolerances,
 };
 use rarefy::internal::prepare::kdtree::KdNode;
 use rarefy::internal::prepare::{PreparedScene, Shading};
@@ -363,4 +364,32 @@ impl Random {
     pub fn direction(&mut self) -> Vec3 {
         (self.point(2.0) - Vec3::ONE).normalize_or(Vec3::Z)
     }
+}
+
+/// Default options at a size.
+pub fn sized(width: u32, height: u32) -> RenderOptions {
+    RenderOptions { width, height, ..RenderOptions::default() }
+}
+
+/// The same frame, fully traced.
+pub fn full(options: &RenderOptions) -> RenderOptions {
+    RenderOptions { mode: Mode::Full, ..options.clone() }
+}
+
+/// Every combination of the options that choose between paths through the kernels.
+pub fn combinations(width: u32, height: u32) -> Vec<RenderOptions> {
+    let mut all = vec![full(&sized(width, height)), sized(width, height)];
+    all.push(RenderOptions { method: Method::paper(), ..sized(width, height) });
+    for block in [2, 4] {
+        for correction in corrections() {
+            for interpolation in Interpolation::ALL {
+                for gcol_space in GcolSpace::ALL {
+                    let mut method = Method { correction, interpolation, ..blocks(block) };
+                    method.checks.gcol_space = gcol_space;
+                    all.push(RenderOptions { method, ..sized(width, height) });
+                }
+            }
+        }
+    }
+    all
 }

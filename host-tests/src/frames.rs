@@ -305,3 +305,28 @@ pub fn zoo() -> Scene {
     scene.view.lights.push(light);
     Scene::new(scene).unwrap()
 }
+
+/// Draws `frames`, each with counters or without, launch by launch on the twin and on `device`, each launch fed the twin's
+/// own inputs.
+///
+/// # Panics
+/// If a word differs.
+pub fn compare(
+    prepared: &Prepared,
+    device: &mut dyn Executor,
+    frames: impl IntoIterator<Item = (RenderOptions, bool)>,
+) -> Vec<KernelParity> {
+    let mut all = Vec::new();
+    for (options, counters) in frames {
+        let results = prepared.parity(device, &options, counters, None).unwrap();
+        let clean = results.iter().all(|r| r.different == 0);
+        assert!(clean, "{}: {options:?}, counters {counters}: {:#?}", prepared.scene.name(), differing(&results));
+        all.extend(results);
+    }
+    all
+}
+
+/// Results with a word that differs.
+pub fn differing(results: &[KernelParity]) -> Vec<&KernelParity> {
+    results.iter().filter(|r| r.different > 0).collect()
+}

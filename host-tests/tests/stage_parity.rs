@@ -21,54 +21,8 @@ use rarefy::internal::layout::struct_layout;
 use rarefy::internal::method::options::{GcolSpace, Interpolation, Method, Mode, RenderOptions, TestSet};
 use rarefy::internal::prepare::{PreparedScene, Shading};
 use rarefy::internal::scene::builtin;
-use rarefy_host_tests::fixtures::{blocks, corrections, sweeps, with};
-use rarefy_host_tests::frames::{Prepared, device, mutated_device, no_opencl, twin, zoo};
-
-fn sized(width: u32, height: u32) -> RenderOptions {
-    RenderOptions { width, height, ..RenderOptions::default() }
-}
-
-fn full(options: &RenderOptions) -> RenderOptions {
-    RenderOptions { mode: Mode::Full, ..options.clone() }
-}
-
-/// Draws `frames` launch by launch on the twin and on `device`, each launch fed the twin's own inputs.
-fn compare(
-    prepared: &Prepared,
-    device: &mut dyn Executor,
-    frames: impl IntoIterator<Item = (RenderOptions, bool)>,
-) -> Vec<KernelParity> {
-    let mut all = Vec::new();
-    for (options, counters) in frames {
-        let results = prepared.parity(device, &options, counters, None).unwrap();
-        let clean = results.iter().all(|r| r.different == 0);
-        assert!(clean, "{}: {options:?}, counters {counters}: {:#?}", prepared.scene.name(), differing(&results));
-        all.extend(results);
-    }
-    all
-}
-
-fn differing(results: &[KernelParity]) -> Vec<&KernelParity> {
-    results.iter().filter(|r| r.different > 0).collect()
-}
-
-/// Every combination of the options that choose between paths through the kernels.
-fn combinations(width: u32, height: u32) -> Vec<RenderOptions> {
-    let mut all = vec![full(&sized(width, height)), sized(width, height)];
-    all.push(RenderOptions { method: Method::paper(), ..sized(width, height) });
-    for block in [2, 4] {
-        for correction in corrections() {
-            for interpolation in Interpolation::ALL {
-                for gcol_space in GcolSpace::ALL {
-                    let mut method = Method { correction, interpolation, ..blocks(block) };
-                    method.checks.gcol_space = gcol_space;
-                    all.push(RenderOptions { method, ..sized(width, height) });
-                }
-            }
-        }
-    }
-    all
-}
+use rarefy_host_tests::fixtures::{blocks, combinations, full, sized, sweeps, with};
+use rarefy_host_tests::frames::{Prepared, compare, device, differing, mutated_device, no_opencl, twin, zoo};
 
 #[test]
 fn every_launch_of_every_kind_of_frame_equals_the_twin() {

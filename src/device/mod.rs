@@ -2,6 +2,7 @@
 //! Where kernels run: the kernels and stages, the CPU twin, OpenCL devices and their profiles, hooks on launches.
 
 pub mod bounds;
+pub mod cpu;
 mod device_choice;
 pub mod executor;
 pub mod frame_memory;

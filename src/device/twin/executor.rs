@@ -11,9 +11,9 @@ use crate::device::executor::{Executor, ExecutorInfo, MemoryLimits};
 use crate::device::frame_memory::{FrameBuffer, FrameHandle, FrameInputs, FrameSizes};
 use crate::device::launch::{Launch, SceneHandle};
 use crate::device::launch_check::check_launch;
-use crate::device::stage::Stage;
+use crate::device::stage::{Kernel, Stage};
 use crate::error::Result;
-use crate::layout::Traversal;
+use crate::layout::{StepParams, Traversal};
 use crate::monitor::Monitor;
 use crate::prepare::{PreparedScene, Shading};
 
@@ -90,6 +90,27 @@ impl TwinExecutor {
     /// A twin whose rays walk as a device does that was built for `traversal`.
     pub fn walking_by(traversal: Traversal) -> Self {
         TwinExecutor { traversal, ..TwinExecutor::default() }
+    }
+
+    /// Runs a launch in this memory by `run`, which gets what [`super::run`] gets.
+    ///
+    /// # Errors
+    /// As for [`Executor::run`].
+    pub(in super::super) fn run_by(
+        &mut self,
+        launch: &Launch,
+        run: impl FnOnce(Stage, Kernel, &SceneArgs, &StepParams, &FrameBuffers, &Monitor) -> Result<()>,
+    ) -> Result<()> {
+        let Launch { stage, kernel, step, scene, frame } = *launch;
+        check_launch(stage, kernel, step, frame.params(), frame.sizes())?;
+        // A scene of another executor is refused here as there, though the twin could read it.
+        scene.memory::<Reservation>()?;
+        let buffers = &frame.memory::<TwinFrame>()?.buffers;
+        let started = Instant::now();
+        let args = SceneArgs { traversal: self.traversal, ..scene_args(scene.prepared(), frame.inputs()) };
+        run(stage, kernel, &args, step, buffers, &self.monitor)?;
+        self.timings.push((stage, started.elapsed().as_secs_f64() * 1e3));
+        Ok(())
     }
 }
 
@@ -174,16 +195,7 @@ impl Executor for TwinExecutor {
     }
 
     fn run(&mut self, launch: &Launch) -> Result<()> {
-        let Launch { stage, kernel, step, scene, frame } = *launch;
-        check_launch(stage, kernel, step, frame.params(), frame.sizes())?;
-        // A scene of another executor is refused here as there, though the twin could read it.
-        scene.memory::<Reservation>()?;
-        let buffers = &frame.memory::<TwinFrame>()?.buffers;
-        let started = Instant::now();
-        let args = SceneArgs { traversal: self.traversal, ..scene_args(scene.prepared(), frame.inputs()) };
-        super::run(stage, kernel, &args, step, buffers, &self.monitor)?;
-        self.timings.push((stage, started.elapsed().as_secs_f64() * 1e3));
-        Ok(())
+        self.run_by(launch, super::run)
     }
 
     fn read(&mut self, frame: &FrameHandle, buffer: FrameBuffer, range: Range<usize>) -> Result<Vec<u32>> {

@@ -13,21 +13,24 @@ fn texel_rgb(scene: &SceneArgs, at: u32) -> Vec3 {
     Vec3::new(decode(word), decode(word >> 8), decode(word >> 16))
 }
 
-/// Bilinear, repeating sample of texture `id` at `(s, t)` in `[0, 1)`.
-pub fn sample_texture(scene: &SceneArgs, id: u32, s: f32, t: f32) -> Vec3 {
+/// The four texels around `(s, t)` in `[0, 1)` of texture `id`, upper row first, and the weights of the right and the lower ones.
+#[inline]
+pub fn texel_corners(scene: &SceneArgs, id: u32, s: f32, t: f32) -> ([Vec3; 4], (f32, f32)) {
     let texture = &scene.textures[id as usize];
     let (offset, width, height) = (texture.offset, texture.width, texture.height);
     let (x, y) = (s * width as f32 - 0.5, (1.0 - t) * height as f32 - 0.5);
     let (fx, fy) = (x.floor(), y.floor());
-    let (wx, wy) = (x - fx, y - fy);
     let (ix, iy) = (fx as i32, fy as i32);
     let low = |i: i32, size: u32| if i < 0 { size - 1 } else { (i as u32).min(size - 1) };
     let high = |i: i32, size: u32| if ((i + 1) as u32) < size { (i + 1) as u32 } else { 0 };
     let (x0, x1, y0, y1) = (low(ix, width), high(ix, width), low(iy, height), high(iy, height));
-    let a = texel_rgb(scene, offset + y0 * width + x0);
-    let b = texel_rgb(scene, offset + y0 * width + x1);
-    let c = texel_rgb(scene, offset + y1 * width + x0);
-    let e = texel_rgb(scene, offset + y1 * width + x1);
+    let texel = |x: u32, y: u32| texel_rgb(scene, offset + y * width + x);
+    ([texel(x0, y0), texel(x1, y0), texel(x0, y1), texel(x1, y1)], (x - fx, y - fy))
+}
+
+/// Bilinear, repeating sample of texture `id` at `(s, t)` in `[0, 1)`.
+pub fn sample_texture(scene: &SceneArgs, id: u32, s: f32, t: f32) -> Vec3 {
+    let ([a, b, c, e], (wx, wy)) = texel_corners(scene, id, s, t);
     let (top, bottom) = (a + (b - a) * wx, c + (e - c) * wx);
     top + (bottom - top) * wy
 }

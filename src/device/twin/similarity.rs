@@ -33,7 +33,7 @@ fn textures_part(step: &StepParams, a: &Attributes, b: &Attributes) -> bool {
 
 /// Whether the texture of what two references see in a mirror or behind glass looks different midway from their mean. Where
 /// they see it too far apart, as in curved mirrors, nobody knows what is midway, and the colours must do.
-fn texture_between(scene: &SceneArgs, step: &StepParams, m: &Material, a: &Attributes, b: &Attributes) -> bool {
+pub fn texture_between(scene: &SceneArgs, step: &StepParams, m: &Material, a: &Attributes, b: &Attributes) -> bool {
     if !step.flags.contains(StepFlags::BEHIND) || a.behind == NO_OBJECT || a.behind != b.behind {
         return false;
     }

@@ -11,9 +11,12 @@ use crate::layout::{FAR_AWAY, NO_TEXTURE, NO_TRIANGLE, TRIANGLE_CUTOUT, TRIANGLE
 use crate::math::{fraction, max2, min2};
 use crate::prepare::kdtree::KdNode;
 
-const WIDEN_UP: f32 = 1.000_000_5;
-const WIDEN_DOWN: f32 = 0.999_999_5;
-const DIRECTION_FLOOR: f32 = 1.0e-20;
+/// Widens the end of a cell's interval by four units in the last place.
+pub const WIDEN_UP: f32 = 1.000_000_5;
+/// Widens its beginning likewise.
+pub const WIDEN_DOWN: f32 = 0.999_999_5;
+/// Components of directions smaller than this count as this.
+pub const DIRECTION_FLOOR: f32 = 1.0e-20;
 
 /// A point on a triangle, as a ray finds it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -42,7 +45,8 @@ fn safe_inverse(d: f32) -> f32 {
     1.0 / floored
 }
 
-fn is_hole(scene: &SceneArgs, triangle: u32, u: f32, v: f32) -> bool {
+/// Whether the triangle's cut-out texture has a hole at `(u, v)`.
+pub fn is_hole(scene: &SceneArgs, triangle: u32, u: f32, v: f32) -> bool {
     let shading = &scene.triangle_shading[triangle as usize];
     let id = scene.materials[shading.material as usize].cutout_texture;
     if id == NO_TEXTURE {

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! The wide CPU engine against the twin: every launch, bit for bit, on every width that this processor has.
+#![allow(clippy::unwrap_used, missing_docs)]
+
+use std::collections::BTreeSet;
+
+use rarefy::internal::device::cpu::Width;
+use rarefy::internal::device::cpu::executor::CpuExecutor;
+use rarefy::internal::device::executor::Executor;
+use rarefy::internal::device::stage::LAUNCHES;
+use rarefy::internal::method::options::{GcolSpace, Interpolation, Method, RenderOptions};
+use rarefy::internal::prepare::Shading;
+use rarefy::internal::scene::builtin;
+use rarefy_host_tests::fixtures::{blocks, combinations, full, sized, sweeps, with};
+use rarefy_host_tests::frames::{Prepared, compare, twin};
+
+fn engines() -> Vec<CpuExecutor> {
+    let engines: Vec<CpuExecutor> = Width::available().filter_map(CpuExecutor::of_width).collect();
+    assert!(!engines.is_empty() || cfg!(target_arch = "arm"), "this processor has no lanes");
+    engines
+}
+
+#[test]
+fn every_launch_of_every_kind_of_frame_equals_the_twin() {
+    let prepared = Prepared::named("zoo");
+    for mut engine in engines() {
+        let frames = combinations(50, 38).into_iter().map(|options| (options, false));
+        let results = compare(&prepared, &mut engine, frames);
+        let launched: BTreeSet<&str> = results.iter().map(|r| r.kernel.label(r.stage)).collect();
+        assert_eq!(launched, LAUNCHES.iter().map(|(.., label)| *label).collect(), "not every launch was compared");
+        // What is counted are the twin's own steps.
+        compare(&prepared, &mut engine, [(sized(50, 38), true)]);
+    }
+}
+
+#[test]
+fn frames_of_every_size_and_scene_equal_the_twin() {
+    for name in builtin::NAMES {
+        let prepared = Prepared::named(name);
+        for mut engine in engines() {
+            let mut frames = Vec::new();
+            for (width, height) in [(1, 1), (1, 7), (7, 1), (2, 2), (3, 5), (33, 17)] {
+                for block in [2, 4] {
+                    frames.push((RenderOptions { method: blocks(block), ..sized(width, height) }, false));
+                }
+                frames.push((full(&sized(width, height)), false));
+            }
+            compare(&prepared, &mut engine, frames);
+        }
+    }
+}
+
+#[test]
+fn larger_frames_equal_the_twin() {
+    for name in ["cafe", "rods", "mirror-room"] {
+        let prepared = Prepared::named(name);
+        let four = RenderOptions { method: blocks(4), ..sized(210, 150) };
+        let linear = with(&sized(210, 150), |method| {
+            method.checks.gcol_space = GcolSpace::Linear;
+            method.interpolation = Interpolation::Plain;
+        });
+        let paper = RenderOptions { method: Method::paper(), ..sized(210, 150) };
+        for mut engine in engines() {
+            compare(
+                &prepared,
+                &mut engine,
+                [sized(210, 150), four.clone(), linear.clone(), paper.clone()].map(|f| (f, false)),
+            );
+        }
+    }
+}
+
+#[test]
+fn anchor_shading_equals_the_twin() {
+    for name in ["spheres", "mirror-room"] {
+        let prepared = Prepared::new(builtin::to_scene(name).unwrap(), Shading::Anchor);
+        for mut engine in engines() {
+            compare(&prepared, &mut engine, [(full(&sized(50, 38)), false), (sized(50, 38), false)]);
+        }
+    }
+}
+
+#[test]
+fn whole_frames_equal_those_of_the_twin() {
+    for name in ["zoo", "cafe"] {
+        let prepared = Prepared::named(name);
+        for mut engine in engines() {
+            let sweeps = RenderOptions { method: sweeps(), ..sized(96, 64) };
+            for options in [sized(96, 64), sweeps, full(&sized(96, 64))] {
+                let drawn = prepared.draw(&mut engine, &options, false).unwrap();
+                let expected = prepared.draw(&mut twin(), &options, false).unwrap();
+                assert!(drawn == expected, "{name}, {}: {options:?}", engine.info().name);
+            }
+        }
+    }
+}
