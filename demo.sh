@@ -11,7 +11,7 @@ say "building"
 cargo build --release --quiet
 device=(--device auto)
 if [ "$opencl" = no ]; then
-    say "no OpenCL on this machine: drawing with the CPU twin of the kernels instead"
+    say "no OpenCL on this machine: drawing on the CPU"
     device=(--device cpu)
 fi
 mkdir -p out

@@ -229,8 +229,8 @@ pub enum Remedy {
     ScaledPictures,
     /// Another [`Setting::Device`].
     OtherDevice,
-    /// The CPU twin as [`Setting::Device`].
-    CpuTwin,
+    /// The CPU as [`Setting::Device`].
+    Cpu,
     /// A smaller work-group among the choices of a profile.
     SmallerWorkGroup,
     /// Shorter slices among the choices of a profile.
@@ -246,10 +246,10 @@ pub enum Remedy {
 impl Remedy {
     /// What helps where drawing takes a device too long.
     pub const OF_A_LOST_DEVICE: &'static [Remedy] =
-        &[Remedy::ShorterSlices, Remedy::SmallerPicture, Remedy::FewerSamples, Remedy::CpuTwin];
+        &[Remedy::ShorterSlices, Remedy::SmallerPicture, Remedy::FewerSamples, Remedy::Cpu];
 
     /// What can be done where a driver ended the process.
-    pub const OF_A_CRASH: &'static [Remedy] = &[Remedy::Retry, Remedy::CpuTwin];
+    pub const OF_A_CRASH: &'static [Remedy] = &[Remedy::Retry, Remedy::Cpu];
 }
 
 impl std::fmt::Display for Remedy {
@@ -265,7 +265,7 @@ impl std::fmt::Display for Remedy {
             Remedy::SmallerFile => "a smaller file",
             Remedy::ScaledPictures => "pictures that are scaled down",
             Remedy::OtherDevice => "another device",
-            Remedy::CpuTwin => "the CPU twin",
+            Remedy::Cpu => "the CPU",
             Remedy::SmallerWorkGroup => "a smaller work-group in the profile's `choices`",
             Remedy::ShorterSlices => "a lower `slice_ms` in the profile's `choices`",
             Remedy::BufferMemory => "the memory path `buffers` in the profile's `choices`",

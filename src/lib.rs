@@ -2,7 +2,7 @@
 //! Rarefy: a ray tracer for phones that shoots rays through about a third of the pixels and rebuilds the others.
 //!
 //! It implements "Adaptive undersampling for efficient mobile ray tracing" (Kim et al., The Visual Computer 2016) with
-//! OpenCL 1.2 kernels and a CPU twin of every kernel. This page is all that a program needs to know.
+//! OpenCL 1.2 kernels, a CPU twin of every kernel, and a wide engine for CPUs. This page is all that a program needs to know.
 //!
 //! # Load, prepare, render, save
 //!
@@ -28,7 +28,7 @@
 //!
 //! # Which device, which method
 //!
-//! [`DeviceOptions`] choose the device ([`DeviceChoice`]: OpenCL where there is one, else the CPU twin), a budget of memory,
+//! [`DeviceOptions`] choose the device ([`DeviceChoice`]: an OpenCL GPU where there is one, else packets of rays on the CPU), a budget of memory,
 //! and a [`Profile`] whose limits OpenCL is held to. Whatever memory the budget leaves, the picture is the same: frames that
 //! do not fit are drawn in bands.
 //!

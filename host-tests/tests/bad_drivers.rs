@@ -178,10 +178,9 @@ fn a_compiler_that_ends_the_process_is_named_at_the_next_start_and_not_asked_aga
     assert_eq!(first.status, None, "it should have died: {first:?}");
     assert_eq!(driver.files("marker"), 1);
     for _ in 0..2 {
-        driver.start().draws_on(
-            "cpu",
-            &["notice: drawing on the CPU twin: ", "passed over: crashed: ", "building program `trace`"],
-        );
+        driver
+            .start()
+            .draws_on("cpu", &["notice: drawing on the CPU: ", "passed over: crashed: ", "building program `trace`"]);
     }
     // Asked for by name, it is refused, not tried.
     let refused = driver.start_with(&[("DEVICE", "opencl")]);
@@ -253,7 +252,7 @@ fn a_library_that_ends_the_process_is_not_opened_again() {
 fn builds_that_fail_are_not_repeated() {
     let Some(driver) = Driver::with("never-builds") else { return };
     let first = driver.start();
-    first.draws_on("cpu", &["notice: drawing on the CPU twin: kernel program", "passed over: build: "]);
+    first.draws_on("cpu", &["notice: drawing on the CPU: kernel program", "passed over: build: "]);
     assert!(first.built("build") > 0 && first.built("careful build") > 0, "both were tried: {first:?}");
     let second = driver.start();
     second.draws_on("cpu", &["as an earlier start found"]);
@@ -294,7 +293,7 @@ fn a_program_that_a_later_frame_needs_may_fail_as_well() {
     let Some(driver) = Driver::with("never-builds") else { return };
     let driver = driver.set("BAD_DRIVER_PROGRAM", "__kernel void correct_sweep(").set("METHOD", "paper");
     for _ in 0..2 {
-        driver.start().draws_on("cpu", &["device: ", "on the CPU twin from here on: kernel program `correct_sweep`"]);
+        driver.start().draws_on("cpu", &["device: ", "on the CPU from here on: kernel program `correct_sweep`"]);
     }
     let refused = driver.start_with(&[("DEVICE", "opencl")]);
     assert!(

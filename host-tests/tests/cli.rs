@@ -52,7 +52,7 @@ fn render_writes_the_picture_the_layers_and_the_statistics() {
         .collect();
     let arguments = format!("render spheres --device cpu --size 40x30 -o out.png --json out.json {}", layers.join(" "));
     let run = rarefy(&folder, &arguments).expect(0);
-    assert!(run.stdout.contains("out.png: 40x30 on CPU twin"), "{}", run.stdout);
+    assert!(run.stdout.contains("out.png: 40x30 on CPU, "), "{}", run.stdout);
     let (width, height, picture) = read_rgb8(folder.path().join("out.png")).unwrap();
     assert_eq!((width, height), (40, 30));
     assert!(picture.iter().collect::<BTreeSet<_>>().len() > 50, "an empty picture");
@@ -325,7 +325,7 @@ fn no_device(variables: &[(&str, &str)], reason: &str) {
     run("render wall --device opencl:1 --size 16x16 -o a.png").expect_error(&[reason]);
     run("selftest --device opencl").expect_error(&["no usable OpenCL device", reason]);
     let auto = run("render wall --size 16x16 -o a.png --json a.json").expect(0);
-    assert!(auto.stderr.contains("drawing on the CPU twin") && auto.stderr.contains(reason), "{}", auto.stderr);
+    assert!(auto.stderr.contains("drawing on the CPU") && auto.stderr.contains(reason), "{}", auto.stderr);
     let value = json(&std::fs::read_to_string(folder.path().join("a.json")).unwrap());
     assert_eq!(value["device"]["backend"], "cpu");
     let devices = run("devices").expect(0);

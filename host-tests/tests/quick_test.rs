@@ -132,7 +132,7 @@ fn auto_falls_back_with_a_notice() {
         assert_eq!(fallen.info().backend, "cpu");
         let notices = fallen.notices().to_vec();
         assert_eq!(notices.len(), 1, "{notices:?}");
-        assert!(notices[0].starts_with("drawing on the CPU twin: self-test failed on "), "{notices:?}");
+        assert!(notices[0].starts_with("drawing on the CPU: self-test failed on "), "{notices:?}");
         assert!(notices[0].contains("step2b"), "{notices:?}");
         assert_eq!(fallen.passed_over().len(), 2);
         // Of the usual build, and of the careful one.

@@ -94,7 +94,7 @@ pub struct DrawArgs {
     /// How adaptive frames are drawn.
     #[command(flatten)]
     pub method: MethodArgs,
-    /// Which device draws: auto, cpu, opencl or opencl:N.
+    /// Which device draws: auto, cpu, twin, opencl or opencl:N.
     #[arg(long, value_parser = named::<DeviceChoice>, default_value = "auto")]
     pub device: DeviceChoice,
     /// Hold the OpenCL device to a profile's limits: none, a built-in name such as adreno-420, or a file.
@@ -218,7 +218,7 @@ pub struct DevicesArgs {
 /// `rarefy selftest`.
 #[derive(Debug, Args)]
 pub struct SelftestArgs {
-    /// Which device to test: auto, cpu, opencl or opencl:N.
+    /// Which device to test: auto, cpu, twin, opencl or opencl:N.
     #[arg(long, value_parser = named::<DeviceChoice>, default_value = "auto")]
     pub device: DeviceChoice,
     /// Hold the OpenCL device to a profile's limits.

@@ -42,7 +42,7 @@ pub fn run(args: &DevicesArgs) -> Result<()> {
         say(json, "");
     }
     if discovery.devices.is_empty() {
-        say(json, "no usable OpenCL device; pictures are drawn by the CPU twin (--device cpu)");
+        say(json, "no usable OpenCL device; pictures are drawn by the CPU (--device cpu)");
     }
     let search = library::find(None);
     if let Some(accepted) = &search.accepted {

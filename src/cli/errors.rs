@@ -44,7 +44,7 @@ fn remedy(remedy: Remedy) -> String {
         Remedy::FewerSamples => "fewer --samples".into(),
         Remedy::ConvergedCorrection => "--correction-method converged".into(),
         Remedy::OtherDevice => "another --device".into(),
-        Remedy::CpuTwin => "--device cpu".into(),
+        Remedy::Cpu => "--device cpu".into(),
         Remedy::Retry => "--retry-crashed".into(),
         Remedy::ShorterSlices => "a --profile with lower `slice_ms`".into(),
         Remedy::SmallerWorkGroup => "a --profile with a smaller work-group".into(),
@@ -74,7 +74,7 @@ pub fn line(error: &Error) -> String {
             let limit = if is_budget { "--memory-budget" } else { limit };
             format!("{what} needs {wanted}, the limit `{limit}` allows {allowed}{}", remedies(given))
         }
-        Error::NoOpenCl { .. } => format!("{error}{}", remedies(&[Remedy::CpuTwin])),
+        Error::NoOpenCl { .. } => format!("{error}{}", remedies(&[Remedy::Cpu])),
         Error::DeviceLost { device, cause } => {
             format!("{device} was lost twice in one frame: {cause}{}", remedies(Remedy::OF_A_LOST_DEVICE))
         }

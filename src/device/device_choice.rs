@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! The words for a choice of device: `auto`, `cpu`, `opencl`, `opencl:N`.
+//! The words for a choice of device: `auto`, `cpu`, `twin`, `opencl`, `opencl:N`.
 
 use std::str::FromStr;
 
@@ -11,6 +11,7 @@ impl std::fmt::Display for DeviceChoice {
         match self {
             DeviceChoice::Auto => f.write_str("auto"),
             DeviceChoice::Cpu => f.write_str("cpu"),
+            DeviceChoice::Twin => f.write_str("twin"),
             DeviceChoice::OpenCl(None) => f.write_str("opencl"),
             DeviceChoice::OpenCl(Some(index)) => write!(f, "opencl:{index}"),
         }
@@ -24,11 +25,12 @@ impl FromStr for DeviceChoice {
         let choice = match text.split_once(':') {
             None if text == "auto" => Some(DeviceChoice::Auto),
             None if text == "cpu" => Some(DeviceChoice::Cpu),
+            None if text == "twin" => Some(DeviceChoice::Twin),
             None if text == "opencl" => Some(DeviceChoice::OpenCl(None)),
             Some(("opencl", index)) => index.parse().ok().map(|index| DeviceChoice::OpenCl(Some(index))),
             _ => None,
         };
-        choice.ok_or_else(|| Error::option(Setting::Device, text, "auto, cpu, opencl or opencl:N"))
+        choice.ok_or_else(|| Error::option(Setting::Device, text, "auto, cpu, twin, opencl or opencl:N"))
     }
 }
 
@@ -38,7 +40,7 @@ mod tests {
 
     #[test]
     fn choices_go_there_and_back() {
-        for text in ["auto", "cpu", "opencl", "opencl:3"] {
+        for text in ["auto", "cpu", "twin", "opencl", "opencl:3"] {
             assert_eq!(text.parse::<DeviceChoice>().unwrap().to_string(), text);
         }
         for text in ["gpu", "cpu:1", "opencl:", "opencl:x", "auto:"] {

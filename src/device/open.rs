@@ -14,11 +14,14 @@ pub use super::opencl::{DeviceReport, DeviceSummary, RefusedLibrary};
 /// Which device draws.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum DeviceChoice {
-    /// The first usable OpenCL device, else the CPU twin.
+    /// The first usable OpenCL device that is not a CPU; else the wide engine on the CPU; where that has no lanes, whatever
+    /// OpenCL device there is. Under a profile, which only OpenCL obeys, the first OpenCL device of any type.
     #[default]
     Auto,
-    /// The CPU twin.
+    /// The wide engine: packets of rays on the CPU's cores.
     Cpu,
+    /// The twin: plain scalar code on the CPU's cores, slower, with the same pictures.
+    Twin,
     /// An OpenCL device: the first usable one, or the one of this index in `rarefy devices`.
     OpenCl(Option<usize>),
 }
@@ -87,13 +90,13 @@ pub(crate) fn open_number(options: &DeviceOptions, index: Option<usize>, careful
     Ok(executor)
 }
 
-/// The OpenCL device that `options` ask for; `None` if they ask for the CPU twin.
+/// The OpenCL device that `options` ask for; `None` if they ask for the CPU.
 ///
 /// # Errors
 /// [`crate::Error::NoOpenCl`] with everything that was tried; a number that no device has; a failing call.
 pub fn open_opencl(options: &DeviceOptions) -> Result<Option<OpenClExecutor>> {
     let index = match options.device {
-        DeviceChoice::Cpu => return Ok(None),
+        DeviceChoice::Cpu | DeviceChoice::Twin => return Ok(None),
         DeviceChoice::Auto => None,
         DeviceChoice::OpenCl(index) => index,
     };

@@ -7,6 +7,7 @@ use std::time::Instant;
 use super::frame::{Frame, FrameStats};
 use super::frames::Frames;
 use super::resolve::resolve;
+use crate::device::cpu::executor::CpuExecutor;
 use crate::device::executor::{Executor, ExecutorInfo};
 use crate::device::frame_memory::FrameHandle;
 use crate::device::hooks::progress::Progress;
@@ -175,7 +176,7 @@ impl Renderer {
             Err(error) if codes::is_loss(&error) => error,
             Err(error @ (Error::KernelBuild { .. } | Error::DriverCrashed { .. })) if self.may_change_device => {
                 // A program that no frame needed so far.
-                self.draw_on_twin(error)?;
+                self.draw_on_cpu(error)?;
                 return self.draw(options, keep, observers, inspect);
             }
             done => return done,
@@ -188,14 +189,14 @@ impl Renderer {
             .map_err(|error| if codes::is_loss(&error) { self.lost(&error) } else { error })
     }
 
-    /// Goes over to the CPU twin, since the device cannot build what a frame needs.
-    fn draw_on_twin(&mut self, reason: Error) -> Result<()> {
+    /// Goes over to the CPU, since the device cannot build what a frame needs.
+    fn draw_on_cpu(&mut self, reason: Error) -> Result<()> {
         self.frames.forget_device();
         self.scene = None;
-        self.executor = Box::new(TwinExecutor::default());
+        self.executor = Box::new(CpuExecutor::default());
         self.scene = Some(self.executor.upload(&self.prepared)?);
         self.may_change_device = false;
-        self.notices.push(format!("drawing on the CPU twin from here on: {reason}"));
+        self.notices.push(format!("drawing on the CPU from here on: {reason}"));
         self.passed_over.push(reason);
         Ok(())
     }
@@ -431,15 +432,15 @@ struct Opened {
 }
 
 impl Opened {
-    fn twin() -> Self {
-        Opened { executor: Box::new(TwinExecutor::default()), careful: false, is_opencl: false }
+    fn on_cpu(executor: impl Executor + 'static) -> Self {
+        Opened { executor: Box::new(executor), careful: false, is_opencl: false }
     }
 
     /// What a user should know about it.
     fn notice(&self, passed_over: &[Error]) -> Option<String> {
         let first = passed_over.first()?;
         Some(match (self.is_opencl, self.careful) {
-            (false, _) => format!("drawing on the CPU twin: {first}"),
+            (false, _) => format!("drawing on the CPU: {first}"),
             (true, true) => format!("drawing with kernels that are built with care, which may be slower: {first}"),
             (true, false) => format!("drawing on {}: {first}", self.executor.info().name),
         })
@@ -455,10 +456,21 @@ fn open_executor(
     monitor: &Monitor,
 ) -> Result<Opened> {
     let (first, is_auto) = match options.device {
-        DeviceChoice::Cpu => return Ok(Opened::twin()),
+        DeviceChoice::Cpu => return Ok(Opened::on_cpu(CpuExecutor::default())),
+        DeviceChoice::Twin => return Ok(Opened::on_cpu(TwinExecutor::default())),
         DeviceChoice::Auto => (0, true),
         DeviceChoice::OpenCl(index) => (index.unwrap_or(0), false),
     };
+    // Software that compiles kernels for the CPU is slower than the engine. What only OpenCL can do is another matter.
+    let is_for_opencl = options.profile.is_some() || options.mutation.is_some() || options.bounds_checks;
+    let prefers_engine = |index: usize| {
+        CpuExecutor::has_lanes()
+            && !is_for_opencl
+            && devices(options).devices.get(index).is_some_and(|device| device.kind == "cpu")
+    };
+    if is_auto && prefers_engine(first) {
+        return Ok(Opened::on_cpu(CpuExecutor::default()));
+    }
     let mut index = first;
     loop {
         for careful in [false, true] {
@@ -485,10 +497,10 @@ fn open_executor(
             return Err(passed_over.swap_remove(0));
         }
         index += 1;
-        // As software, the twin is as good as another device.
+        // As software, the engine is as good as another device.
         let is_next = devices(options).devices.get(index).is_some_and(|device| device.kind != "cpu");
         if !is_next {
-            return Ok(Opened::twin());
+            return Ok(Opened::on_cpu(CpuExecutor::default()));
         }
     }
 }

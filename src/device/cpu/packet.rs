@@ -101,7 +101,7 @@ impl<'a, L: Lanes, const K: usize> Walk<'a, L, K> {
         let mut any = none;
         for k in 0..K {
             let (o, d) = (rays.origin[k], rays.direction[k]);
-            let (mut t_min, mut t_max) = (None, None);
+            let (mut enter, mut leave) = (zero, zero);
             for (axis, (o, d)) in [(o.x, d.x), (o.y, d.y), (o.z, d.z)].into_iter().enumerate() {
                 let inverse = safe_inverse(l, d);
                 walk.origin[axis][k] = o;
@@ -109,19 +109,11 @@ impl<'a, L: Lanes, const K: usize> Walk<'a, L, K> {
                 walk.negative[axis][k] = inverse.lt(zero);
                 let a = (Floats::splat(l, frame.bounds_min[axis]) - o) * inverse;
                 let b = (Floats::splat(l, frame.bounds_max[axis]) - o) * inverse;
-                t_min = Some(t_min.map_or(
-                    a.min2(b),
-                    #[inline(always)]
-                    |t: Floats<L>| t.max2(a.min2(b)),
-                ));
-                t_max = Some(t_max.map_or(
-                    a.max2(b),
-                    #[inline(always)]
-                    |t: Floats<L>| t.min2(a.max2(b)),
-                ));
+                let (first, last) = (a.min2(b), a.max2(b));
+                (enter, leave) = if axis == 0 { (first, last) } else { (enter.max2(first), leave.min2(last)) };
             }
-            let t_min = zero.max2(t_min.unwrap_or(zero) * WIDEN_DOWN);
-            let t_max = t_limit[k].min2(t_max.unwrap_or(zero) * WIDEN_UP);
+            let t_min = zero.max2(enter * WIDEN_DOWN);
+            let t_max = t_limit[k].min2(leave * WIDEN_UP);
             let inside = rays.alive[k] & t_min.le(t_max);
             walk.cell.t_min[k] = t_min;
             walk.cell.t_max[k] = inside.select(t_max, Floats::splat(l, -1.0));
@@ -141,11 +133,8 @@ impl<'a, L: Lanes, const K: usize> Walk<'a, L, K> {
 
     /// Lanes whose ray enters the cell.
     #[inline(always)]
-    pub fn inside(&self) -> [Mask<L>; K] {
-        let mut inside = self.cell.t_min.map(
-            #[inline(always)]
-            |t| t.le(t),
-        );
+    pub fn inside(&self, l: L) -> [Mask<L>; K] {
+        let mut inside = [Mask::splat(l, false); K];
         for k in 0..K {
             inside[k] = self.cell.t_min[k].le(self.cell.t_max[k]);
         }

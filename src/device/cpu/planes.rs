@@ -21,12 +21,11 @@ pub struct WideAttributes<L: Lanes> {
     pub behind: Words<L>,
 }
 
-/// Words of a buffer at the indices of `lanes`, 0 in other lanes.
+/// Words of a buffer at the indices `at`, of which those of unused lanes must lie in the buffer as well: 0 does.
 #[inline(always)]
-pub fn gather<L: Lanes>(l: L, buffer: &Buffer, first: u32, at: &Array<u32>, lanes: Mask<L>) -> Words<L> {
+pub fn gather<L: Lanes>(l: L, buffer: &Buffer, first: u32, at: &Array<u32>) -> Words<L> {
     let mut words = [0; MOST_LANES];
-    for lane in lanes_of(lanes.bits()) {
-        let lane = lane % MOST_LANES;
+    for lane in 0..L::COUNT {
         words[lane] = buffer.get(first + at[lane]);
     }
     Words::from_array(l, &words)
@@ -36,7 +35,14 @@ pub fn gather<L: Lanes>(l: L, buffer: &Buffer, first: u32, at: &Array<u32>, lane
 #[inline(always)]
 pub fn scatter<L: Lanes>(buffer: &Buffer, first: u32, at: &Array<u32>, words: Words<L>, lanes: Mask<L>) {
     let words = words.to_array();
-    for lane in lanes_of(lanes.bits()) {
+    let bits = lanes.bits();
+    if bits.count_ones() as usize == L::COUNT {
+        for lane in 0..L::COUNT {
+            buffer.set(first + at[lane], words[lane]);
+        }
+        return;
+    }
+    for lane in lanes_of(bits) {
         let lane = lane % MOST_LANES;
         buffer.set(first + at[lane], words[lane]);
     }
@@ -80,16 +86,10 @@ pub fn store_attributes<L: Lanes>(
 
 /// Reads all attributes of the pixels at plane indices `at`.
 #[inline(always)]
-pub fn load_attributes<L: Lanes>(
-    l: L,
-    planes: &Buffer,
-    pitch: u32,
-    at: &Array<u32>,
-    lanes: Mask<L>,
-) -> WideAttributes<L> {
+pub fn load_attributes<L: Lanes>(l: L, planes: &Buffer, pitch: u32, at: &Array<u32>) -> WideAttributes<L> {
     let words = inlined(
         #[inline(always)]
-        |plane: u32| gather(l, planes, plane * pitch, at, lanes),
+        |plane: u32| gather(l, planes, plane * pitch, at),
     );
     let floats = inlined(
         #[inline(always)]

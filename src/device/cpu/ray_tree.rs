@@ -57,10 +57,10 @@ fn shadow_test<L: Lanes, const K: usize>(
 ) -> [Words<L>; K] {
     let zero = Floats::splat(l, 0.0);
     let mut bits = [Words::splat(l, 0); K];
-    let origin = points.map(
-        #[inline(always)]
-        |p| p.outside(scene),
-    );
+    let mut origin = [Vectors { x: zero, y: zero, z: zero }; K];
+    for k in 0..K {
+        origin[k] = points[k].outside(scene);
+    }
     for (i, light) in scene.lights.iter().enumerate().take(scene.frame.light_count as usize) {
         let light = Vectors::splat(l, xyz(light.position));
         let mut rays = Rays { origin, direction: origin, alive: *lanes };
@@ -222,10 +222,10 @@ fn gather_secondary<L: Lanes, const K: usize>(
     let (zero, none) = (Floats::splat(l, 0.0), Mask::splat(l, false));
     let black = Vectors { x: zero, y: zero, z: zero };
     let no_object = Words::splat(l, NO_OBJECT);
-    let mut found = points.map(
-        #[inline(always)]
-        |p| Secondary { gcol: black, behind: no_object, s: p.s, t: p.t },
-    );
+    let mut found = [Secondary { gcol: black, behind: no_object, s: zero, t: zero }; K];
+    for k in 0..K {
+        (found[k].s, found[k].t) = (points[k].s, points[k].t);
+    }
     let (mut first, mut second) = ([none; K], [none; K]);
     for k in 0..K {
         let kind = of_materials(
@@ -248,14 +248,12 @@ fn gather_secondary<L: Lanes, const K: usize>(
         let mut at = *points;
         let mut alive = begins;
         let mut split = if chain == 0 { second } else { [none; K] };
-        let is_last = if chain == 0 {
-            second.map(
-                #[inline(always)]
-                |m| !m,
-            )
-        } else {
-            [!none; K]
-        };
+        let mut is_last = [!none; K];
+        if chain == 0 {
+            for k in 0..K {
+                is_last[k] = !second[k];
+            }
+        }
         let (mut spent, mut panes) = ([Words::splat(l, 0); K], [Words::splat(l, 0); K]);
         let mut c = [Chains { origin: black, direction: black, weight: black, inside: none, refracted: none }; K];
         for k in 0..K {
@@ -459,7 +457,7 @@ fn store<L: Lanes>(
         let planes = &buffers.attributes;
         let mut class = Words::splat(l, pixel_class);
         if pixel_class == CLASS_CORRECTED {
-            let before = load_attributes(l, planes, pitch, &at, lanes);
+            let before = load_attributes(l, planes, pitch, &at);
             let mut colors = [0; MOST_LANES];
             for lane in lanes_of(lanes.bits()) {
                 let lane = lane % MOST_LANES;

@@ -64,7 +64,7 @@ impl<L: Lanes> Check<'_, L> {
             let lane = lane % MOST_LANES;
             at[lane] = plane_index(self.scene.frame, (i64::from(x[lane]) + dx) as u32, y);
         }
-        let a = load_attributes(self.l, &self.buffers.attributes, self.scene.frame.plane_pitch, &at, lanes);
+        let a = load_attributes(self.l, &self.buffers.attributes, self.scene.frame.plane_pitch, &at);
         References { at, a }
     }
 

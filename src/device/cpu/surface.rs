@@ -112,10 +112,11 @@ pub fn surface_points<L: Lanes>(
     let interpolate = inlined(
         #[inline(always)]
         |corner: [usize; 3]| {
-            let [p, q, r] = corner.map(
+            let at = inlined(
                 #[inline(always)]
-                |i| Floats::from_array(l, &texcoords[i]),
+                |i: usize| Floats::from_array(l, &texcoords[i]),
             );
+            let (p, q, r) = (at(corner[0]), at(corner[1]), at(corner[2]));
             p * w + q * u + r * v
         },
     );

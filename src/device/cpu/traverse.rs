@@ -67,7 +67,7 @@ fn closest_hit_inlined<L: Lanes, const K: usize>(
     );
     loop {
         let entries = walk.descend(l);
-        let inside = walk.inside();
+        let inside = walk.inside(l);
         for &id in &scene.leaf_triangles[entries] {
             let triangle = &scene.triangles[id as usize];
             let bits = triangle.corners[0][3].to_bits();
@@ -96,10 +96,10 @@ fn closest_hit_inlined<L: Lanes, const K: usize>(
                 },
             );
         }
-        let t_end = best.map(
-            #[inline(always)]
-            |hit| hit.t,
-        );
+        let mut t_end = [far; K];
+        for k in 0..K {
+            t_end[k] = best[k].t;
+        }
         if !walk.next_cell(l, &t_end) {
             return best;
         }
@@ -141,7 +141,7 @@ fn any_hit_inlined<L: Lanes, const K: usize>(
     let mut t_end = *t_limit;
     loop {
         let entries = walk.descend(l);
-        let mut wanted = walk.inside();
+        let mut wanted = walk.inside(l);
         for k in 0..K {
             wanted[k] = wanted[k].without(shadowed[k]);
         }

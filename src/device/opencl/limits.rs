@@ -9,7 +9,7 @@ use crate::{Error, Result};
 type Remedies = &'static [Remedy];
 
 /// The remedies where no setting makes a request smaller.
-const OTHER_DEVICE: Remedies = &[Remedy::OtherDevice, Remedy::CpuTwin];
+const OTHER_DEVICE: Remedies = &[Remedy::OtherDevice, Remedy::Cpu];
 const SMALLER: Remedies = &[Remedy::SmallerPicture, Remedy::SmallerScene];
 const SMALLER_WORK_GROUP: Remedies = &[Remedy::SmallerWorkGroup];
 const BUFFERS: Remedies = &[Remedy::BufferMemory];
@@ -277,7 +277,7 @@ impl Limits {
         let what = format!("a constant argument of {what}");
         sizes.iter().try_for_each(|&bytes| {
             let allowed = self.max_constant_buffer_bytes;
-            let remedies = &[Remedy::FewerLights, Remedy::OtherDevice, Remedy::CpuTwin];
+            let remedies = &[Remedy::FewerLights, Remedy::OtherDevice, Remedy::Cpu];
             self.most(&what, "cl_device_max_constant_buffer_size", bytes, allowed, " bytes", remedies)
         })
     }
