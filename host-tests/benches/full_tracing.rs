@@ -9,7 +9,8 @@
 //! Times are whole frames: `frame ms` of Rarefy includes the read-back of the picture, which Embree draws straight into
 //! memory; `kernel ms` is what the device itself reports. The ratio is Embree's frame over Rarefy's frame, the median of
 //! all rounds. Exit status: 1 if the ray counts of a scene differ by more than 0.5 %, 0 otherwise: the time itself
-//! decides nothing. The variable DEVICE_INDEX chooses another device, SHARED another folder in place of `../shared`.
+//! decides nothing. The variable DEVICE chooses another device (`cpu`, `twin`, `opencl:N`), ANCHOR_MODE how Embree traces (`single`,
+//! `packet8`, `packet16`), ANCHOR_CONFIG what it is told (`max_isa=avx2`), SHARED another folder in place of `../shared`.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
@@ -90,10 +91,12 @@ fn number_after(text: &str, key: &str) -> BenchResult<f64> {
 
 fn run_anchor(program: &Path, scene: &Path) -> BenchResult<Anchor> {
     let (size, frames) = (SIZE.to_string(), FRAMES.to_string());
+    let variable = |name: &str, or: &str| std::env::var(name).unwrap_or(or.to_owned());
+    let (mode, config) = (variable("ANCHOR_MODE", "single"), variable("ANCHOR_CONFIG", ""));
     let output = Command::new(program)
         .arg(scene.join("scene.obj"))
         .arg(scene.join("view.json"))
-        .args(["--mode", "single", "--threads", "2", "--size", &size, "--frames", &frames])
+        .args(["--mode", &mode, "--config", &config, "--threads", "2", "--size", &size, "--frames", &frames])
         .output()?;
     if !output.status.success() {
         return Err(String::from_utf8_lossy(&output.stderr).into());
@@ -118,7 +121,7 @@ struct Measured {
 
 fn measure(anchor: &Path, scene: &Path, name: &str, rounds: usize) -> BenchResult<Measured> {
     let options = DeviceOptions {
-        device: DeviceChoice::OpenCl(std::env::var("DEVICE_INDEX").ok().and_then(|index| index.parse().ok())),
+        device: std::env::var("DEVICE").map_or(Ok(DeviceChoice::OpenCl(None)), |words| words.parse())?,
         ..DeviceOptions::default()
     };
     let monitor = rarefy::Monitor::default();
@@ -219,7 +222,9 @@ fn run() -> BenchResult<bool> {
     if count > 0.0 {
         let mean = f64::exp(logarithms / count);
         let verdict = if mean >= GOAL { "reached" } else { "missed" };
-        println!("geometric mean of the ratios: {mean:.3} of Embree's single rays; goal {GOAL}: {verdict}");
+        println!(
+            "geometric mean of the ratios: {mean:.3} of Embree; goal of OpenCL against single rays {GOAL}: {verdict}"
+        );
     }
     if !agree {
         println!("the ray counts differ: the two did not do equal work");

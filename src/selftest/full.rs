@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The self-test: every kernel on tiny inputs with known answers.
 //!
-//! The CPU twin must reproduce stored checksums; an OpenCL device must lay out structs as the host does and agree with
+//! The CPU twin and the wide engine must reproduce stored checksums; an OpenCL device must lay out structs as the host does and agree with
 //! the twin, launch by launch, each fed the twin's own inputs. A smaller one runs by itself on a driver's first use: see
 //! [`crate::selftest::quick`].
 
 use std::sync::Arc;
 
+use crate::device::cpu::executor::CpuExecutor;
 use crate::device::executor::Executor;
 use crate::device::hooks::parity::KernelParity;
 use crate::device::hooks::parity::Parity;
@@ -62,11 +63,14 @@ pub fn breaking_mutation(stage: Stage) -> Mutation {
 /// No device, a kernel that does not build, or a failing call; wrong results are not errors but failed checks.
 pub fn run(options: &DeviceOptions) -> Result<SelfTest> {
     let scene = prepared(SCENE, Shading::Full)?;
-    let twin_check = check_twin(&scene)?;
+    let mut checks = vec![
+        check_known("twin", &mut TwinExecutor::default(), &scene)?,
+        check_known("cpu", &mut CpuExecutor::default(), &scene)?,
+    ];
     let Some(mut device) = open_opencl(&DeviceOptions { strict: true, ..options.clone() })? else {
-        return Ok(SelfTest { device: TwinExecutor::default().info().describe(), checks: vec![twin_check] });
+        return Ok(SelfTest { device: CpuExecutor::default().info().describe(), checks });
     };
-    let mut checks = vec![twin_check, check_layout(&device.probe()?)];
+    checks.push(check_layout(&device.probe()?));
     for result in stage_parity(&scene, &mut device)? {
         checks.push(check_parity(&result));
     }
@@ -99,11 +103,11 @@ pub fn stage_parity(scene: &Arc<PreparedScene>, device: &mut dyn Executor) -> Re
     Ok(parity.results)
 }
 
-fn check_twin(scene: &Arc<PreparedScene>) -> Result<Check> {
-    let mut twin = TwinExecutor::default();
+/// Whether an executor on the CPU draws the known frames, to the last bit.
+fn check_known(name: &str, executor: &mut dyn Executor, scene: &Arc<PreparedScene>) -> Result<Check> {
     let mut checksum = 0xcbf2_9ce4_8422_2325u64;
     for options in frames() {
-        for word in draw_test_frame(&mut twin, scene, &options, false, &mut [])? {
+        for word in draw_test_frame(executor, scene, &options, false, &mut [])? {
             for byte in word.to_le_bytes() {
                 checksum = (checksum ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
             }
@@ -115,7 +119,7 @@ fn check_twin(scene: &Arc<PreparedScene>) -> Result<Check> {
     } else {
         format!("checksum {checksum:#018x} instead of {TWIN_CHECKSUM:#018x}")
     };
-    Ok(Check { name: "twin".into(), passed, detail })
+    Ok(Check { name: name.into(), passed, detail })
 }
 
 #[cfg(test)]
