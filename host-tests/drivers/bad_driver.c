@@ -92,13 +92,6 @@ cl_int clGetDeviceInfo(void *device, cl_uint name, size_t size, void *value, siz
   if (fault("only-qualcomm")) {
     if (name == CL_DEVICE_NAME || name == CL_DEVICE_VENDOR) return answer("QUALCOMM ", size, value, size_ret);
   }
-  // A phone's device is a GPU.
-  if (name == CL_DEVICE_TYPE) {
-    if (size_ret) *size_ret = sizeof(cl_device_type);
-    if (value && size < sizeof(cl_device_type)) return CL_INVALID_VALUE;
-    if (value) *(cl_device_type *)value = CL_DEVICE_TYPE_GPU;
-    return CL_SUCCESS;
-  }
   const char *driver = getenv("BAD_DRIVER_VERSION");
   if (name == CL_DRIVER_VERSION && driver) return answer(driver, size, value, size_ret);
   cl_int (*call)(void *, cl_uint, size_t, void *, size_t *) = real("clGetDeviceInfo");
