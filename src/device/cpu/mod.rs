@@ -2,7 +2,7 @@
 //! The wide engine: the twin's launches in packets of rays and vectors of pixels, by whatever vector instructions the
 //! processor has. Equal to the twin in every bit, on every width.
 //!
-//! One body per algorithm, generic over [`lanes::Lanes`]; a file here has the name of the twin's file that it repeats lane by
+//! One body per algorithm, generic over `Lanes` (`lanes.rs`); a file here has the name of the twin's file that it repeats lane by
 //! lane. The twin stays the truth and what work is counted by; kernels that take little of a frame run as their twins.
 
 // Compares as the twin does, so that NaN takes the same branch. Loops over the vectors of a packet index several arrays.
