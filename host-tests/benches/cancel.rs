@@ -113,7 +113,7 @@ fn main() -> Result<()> {
         "95 %",
         "most"
     );
-    for (device_name, device) in [("twin", DeviceChoice::Cpu), ("opencl", DeviceChoice::OpenCl(None))] {
+    for (device_name, device) in [("twin", DeviceChoice::Twin), ("opencl", DeviceChoice::OpenCl(None))] {
         let options = DeviceOptions { device, ..DeviceOptions::default() };
         let make = |monitor: &Monitor| renderer_of(&scene::load(&folder, monitor)?, &options, monitor);
         measure(&format!("{device_name}: load and make ready"), moments, &mut |monitor| make(monitor).map(drop))?;

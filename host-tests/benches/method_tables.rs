@@ -202,7 +202,7 @@ fn load(folder: &str, name: &'static str, size: u32) -> Option<Scene> {
         return None;
     }
     let monitor = rarefy::Monitor::default();
-    let device = DeviceOptions { device: DeviceChoice::Cpu, ..DeviceOptions::default() };
+    let device = DeviceOptions { device: DeviceChoice::Twin, ..DeviceOptions::default() };
     let mut renderer = rarefy_host_tests::frames::renderer_of(
         &rarefy::internal::scene::load(&path, &monitor).unwrap(),
         &device,

@@ -273,7 +273,7 @@ pub fn dashes(lines: &[(f32, f32)]) -> Scene {
 
 /// A renderer on the CPU twin.
 pub fn twin_renderer(scene: Scene) -> Renderer {
-    let options = DeviceOptions { device: DeviceChoice::Cpu, ..DeviceOptions::default() };
+    let options = DeviceOptions { device: DeviceChoice::Twin, ..DeviceOptions::default() };
     crate::frames::renderer_of(&scene, &options, &rarefy::Monitor::default()).unwrap()
 }
 

@@ -41,7 +41,7 @@ fn layers_are_what_they_were() {
     let failed_folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("golden");
     let mut failures = Vec::new();
     for name in SCENES {
-        let options = DeviceOptions { device: DeviceChoice::Cpu, ..DeviceOptions::default() };
+        let options = DeviceOptions { device: DeviceChoice::Twin, ..DeviceOptions::default() };
         let mut renderer =
             renderer_of(&builtin::to_scene(name).unwrap(), &options, &rarefy::Monitor::default()).unwrap();
         let options = RenderOptions { width: WIDTH, height: HEIGHT, mode: Mode::Adaptive, ..RenderOptions::default() };

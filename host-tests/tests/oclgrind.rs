@@ -44,7 +44,7 @@ fn renderer(device: DeviceChoice, mutation: Option<Mutation>) -> Renderer {
 #[ignore = "oclgrind: every kernel, interpreted"]
 fn no_kernel_races_or_leaves_its_buffers() {
     let Some(log) = log() else { return };
-    let (mut device, mut twin) = (renderer(DeviceChoice::OpenCl(None), None), renderer(DeviceChoice::Cpu, None));
+    let (mut device, mut twin) = (renderer(DeviceChoice::OpenCl(None), None), renderer(DeviceChoice::Twin, None));
     assert!(device.info().name.contains("Oclgrind"), "{:?}", device.info());
     let base = RenderOptions { width: 26, height: 19, ..RenderOptions::default() };
     let frames = [

@@ -74,7 +74,7 @@ fn draw_anywhere(seed: u64, rounds: usize, space: Space) {
     };
     let mut drawn = 0;
     for (at, scene) in scenes.iter().enumerate() {
-        let mut twin = renderer(scene, DeviceChoice::Cpu);
+        let mut twin = renderer(scene, DeviceChoice::Twin);
         let mut device = with_opencl.then(|| renderer(scene, DeviceChoice::OpenCl(None)));
         for _ in (at..rounds).step_by(scenes.len()) {
             let options = options(&mut random, space.largest.unwrap_or(70));

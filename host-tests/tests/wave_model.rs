@@ -25,7 +25,7 @@ fn options() -> RenderOptions {
 
 #[test]
 fn both_back_ends_and_profiles_agree() {
-    let mut twin = renderer(DeviceChoice::Cpu, None);
+    let mut twin = renderer(DeviceChoice::Twin, None);
     let expected = wave_model(&mut twin, &options()).unwrap();
     let picture = twin.render_exactly(&options(), Keep::default()).unwrap().pixels;
     assert_eq!(expected.full.len(), 1);
@@ -37,7 +37,7 @@ fn both_back_ends_and_profiles_agree() {
     // Base pixels cost about the same in whichever columns they lie.
     let base = |shifted: bool| {
         let options = with(&options(), |method| method.shifted_rows = shifted);
-        let mut renderer = renderer(DeviceChoice::Cpu, None);
+        let mut renderer = renderer(DeviceChoice::Twin, None);
         wave_model(&mut renderer, &options).unwrap().adaptive[Stage::Step1 as usize].lanes
     };
     assert!((0.95..1.05).contains(&(base(true) / base(false))), "{} and {}", base(true), base(false));
@@ -69,7 +69,7 @@ fn both_back_ends_and_profiles_agree() {
 #[test]
 fn a_frame_in_bands_has_no_model() {
     let limited =
-        DeviceOptions { device: DeviceChoice::Cpu, memory_budget_bytes: Some(2 << 20), ..DeviceOptions::default() };
+        DeviceOptions { device: DeviceChoice::Twin, memory_budget_bytes: Some(2 << 20), ..DeviceOptions::default() };
     let mut renderer =
         renderer_of(&builtin::to_scene("spheres").unwrap(), &limited, &rarefy::Monitor::default()).unwrap();
     let large = RenderOptions { width: 500, height: 400, ..RenderOptions::default() };

@@ -107,7 +107,7 @@ pub fn whole_scene(data: &[u8]) {
     let (obj, mtl, view, picture) = (take(1, OBJ), take(2, MTL), take(4, VIEW), take(8, PICTURE));
     let Some(scene) = load(&obj, &mtl, &view, &picture) else { return };
     let options = options(&mut Random::new(seed | 1), 20);
-    let device = DeviceOptions { device: DeviceChoice::Cpu, ..DeviceOptions::default() };
+    let device = DeviceOptions { device: DeviceChoice::Twin, ..DeviceOptions::default() };
     // A scene may be too much for the tree, but then it is told.
     let Ok(mut renderer) = renderer_of(&scene, &device, &rarefy::Monitor::default()) else { return };
     let frame = match renderer.render_exactly(&options, Keep::EVERYTHING) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Vectors of lanes: the one file that names the crate behind them.
+//! Vectors of lanes: beside `dispatch.rs`, which asks what the processor has, the one file that names the crate behind them.
 //!
 //! [`Floats`], [`Words`] and [`Mask`] hold one value for each lane of [`Lanes`], whose number is that of the instruction set:
 //! 4 (SSE2, NEON), 8 (AVX2), 16 (AVX-512). Every operation rounds as the twin's scalar one does: there is no fused

@@ -65,7 +65,7 @@ pub fn safe_inverse<L: Lanes>(l: L, d: Floats<L>) -> Floats<L> {
     Floats::splat(l, 1.0) / d.abs().lt(floor).select(floor.with_sign_of(d), d)
 }
 
-/// Rays of an octant walk alike; others are counted here to know which of two children most want first.
+/// How many lanes are set: tells which of two children most rays meet first, and whether all do.
 #[inline(always)]
 fn count<L: Lanes, const K: usize>(masks: &[Mask<L>; K]) -> u32 {
     let mut n = 0;
