@@ -10,8 +10,9 @@ use rarefy::internal::device::executor::Executor;
 use rarefy::internal::device::stage::LAUNCHES;
 use rarefy::internal::method::options::{GcolSpace, Interpolation, Method, RenderOptions};
 use rarefy::internal::prepare::Shading;
+use rarefy::internal::scene::Camera;
 use rarefy::internal::scene::builtin;
-use rarefy_host_tests::fixtures::{blocks, combinations, full, sized, sweeps, with};
+use rarefy_host_tests::fixtures::{Random, blocks, combinations, full, sized, sweeps, with};
 use rarefy_host_tests::frames::{Prepared, compare, twin};
 
 fn engines() -> Vec<CpuExecutor> {
@@ -90,6 +91,29 @@ fn whole_frames_equal_those_of_the_twin() {
                 let drawn = prepared.draw(&mut engine, &options, false).unwrap();
                 let expected = prepared.draw(&mut twin(), &options, false).unwrap();
                 assert!(drawn == expected, "{name}, {}: {options:?}", engine.info().name);
+            }
+        }
+    }
+}
+
+/// Cameras anywhere: within the scene, far away, looking past it, with narrow and wide views.
+#[test]
+fn views_from_anywhere_equal_the_twin() {
+    let mut random = Random::new(14);
+    for name in ["zoo", "wall", "rods", "spheres"] {
+        let mut prepared = Prepared::named(name);
+        let given = prepared.scene.view().clone();
+        for round in 0..20 {
+            let span = (given.camera.eye - given.camera.look_at).length() * 10f32.powf(random.range(-3.0, 2.5));
+            let eye = given.camera.look_at + random.direction() * span;
+            let look_at = if round % 4 == 3 { eye + random.direction() * span } else { given.camera.look_at };
+            let camera =
+                Camera { eye, look_at, up: random.direction(), fov_y_degrees: 10f32.powf(random.range(-1.0, 2.24)) };
+            prepared.scene.set_view(rarefy::View { camera, ..given.clone() }).unwrap();
+            let size = [1 + random.below(40) as u32, 1 + random.below(40) as u32];
+            let options = RenderOptions { method: blocks([2, 4][round % 2]), ..sized(size[0], size[1]) };
+            for mut engine in engines() {
+                compare(&prepared, &mut engine, [(options.clone(), false), (full(&options), false)]);
             }
         }
     }

@@ -212,6 +212,10 @@ public final class RenderLoop extends Schedule {
       DeviceInfo who = opened.deviceInfo();
       Camera its = opened.getCamera();
       synchronized (lock) {
+        if (!wantedScene.equals(scene)) {
+          // Too late to be cancelled; its camera must not be taken for that of the other scene.
+          return;
+        }
         tracer = opened;
         opened = null;
         openScene = wantedScene;
@@ -271,7 +275,11 @@ public final class RenderLoop extends Schedule {
     boolean drop;
     synchronized (lock) {
       on = Objects.requireNonNull(tracer);
-      from = Objects.requireNonNull(camera);
+      from = camera;
+      if (from == null) {
+        // Another scene came since the loop looked.
+        return;
+      }
       how = settings;
       startedWith = wanted;
       scale = refined ? 1 : resolution.coarse();
@@ -356,8 +364,12 @@ public final class RenderLoop extends Schedule {
     Camera from;
     synchronized (lock) {
       on = Objects.requireNonNull(tracer);
-      from = Objects.requireNonNull(camera);
-      what = Objects.requireNonNull(plan);
+      from = camera;
+      what = plan;
+      if (from == null || what == null) {
+        // Cancelled since the loop looked.
+        return;
+      }
       progress = 0;
     }
     tell();

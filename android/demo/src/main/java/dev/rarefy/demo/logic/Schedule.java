@@ -348,7 +348,8 @@ abstract class Schedule {
       return Task.CLOSE;
     } else if (!running || failure != null) {
       return null;
-    } else if (tracer == null || !scene.equals(openScene)) {
+    } else if (tracer == null || camera == null || !scene.equals(openScene)) {
+      // Without a camera: the user went to another scene and back.
       return Task.OPEN;
     } else if (plan != null) {
       return Task.BENCHMARK;

@@ -32,6 +32,7 @@ public final class LoopTest {
     heatGivesSmallerPictures();
     idleFramesAreMeasured();
     theBackgroundFreesAndKeepsTheCamera();
+    wishesThatChangeAtOnceDoNoHarm();
     quittingEndsWhateverGoesOn();
     openedFilesAreDrawn(new File(arguments[0]), new File(arguments[1]));
     Stage.closeReferences();
@@ -294,6 +295,33 @@ public final class LoopTest {
       Check.equal(saved, stage.done().camera());
       Check.that(!saved.equals(stage.loop.startCamera()), "the scene has its own");
       stage.shows(Stage.SPHERES, PLAIN, saved, Stage.WIDTH, Stage.HEIGHT);
+    }
+  }
+
+  /** Wishes that are gone before the loop comes to them, or while it does. */
+  private static void wishesThatChangeAtOnceDoNoHarm() throws Exception {
+    try (Stage stage = new Stage(Stage.WALL, PLAIN)) {
+      stage.begin();
+      Camera camera = stage.done().camera();
+      Benchmark.Plan plan = new Benchmark.Plan("x", 16, 16, 1);
+      for (int round = 0; round < 3000; round++) {
+        stage.loop.benchmark(plan);
+        if (round % 3 == 0) {
+          Thread.yield();
+        }
+        stage.loop.cancelBenchmark();
+      }
+      Check.equal(camera, stage.done().camera());
+      for (int round = 0; round < 1000; round++) {
+        stage.loop.setCamera(camera.orbit(round, 0));
+        if (round % 3 == 0) {
+          Thread.yield();
+        }
+        stage.loop.setScene(Stage.RODS);
+        stage.loop.setScene(Stage.WALL);
+      }
+      Check.equal(camera, stage.done().camera());
+      stage.shows(Stage.WALL, PLAIN, camera, Stage.WIDTH, Stage.HEIGHT);
     }
   }
 

@@ -69,8 +69,12 @@ final class Stage implements AutoCloseable {
   }
 
   State done() throws Exception {
-    Check.until(
-        "done, but " + loop.state().phase(), () -> loop.state().phase() == State.Phase.DONE);
+    try {
+      Check.until("done", () -> loop.state().phase() == State.Phase.DONE);
+    } catch (AssertionError e) {
+      State state = loop.state();
+      throw new AssertionError(state.phase() + ", " + state.failure() + ", " + loop.task, e);
+    }
     return loop.state();
   }
 
