@@ -21,7 +21,12 @@ fn all() -> Vec<Model> {
 #[test]
 fn triangle_counts_are_those_of_the_views() {
     let counts: Vec<(String, usize)> = all().iter().map(|m| (m.name.clone(), m.triangle_count())).collect();
-    let large = [("cafe", 28_000..=30_000), ("kitchen", 95_000..=110_000), ("bathroom", 250_000..=290_000)];
+    let large = [
+        ("cafe", 28_000..=30_000),
+        ("runner", 76_000..=80_000),
+        ("kitchen", 95_000..=110_000),
+        ("bathroom", 250_000..=290_000),
+    ];
     let tiny = [("wall", 2), ("spheres", 2882), ("rods", 338), ("mirror-room", 60)];
     assert_eq!(counts.len(), large.len() + tiny.len());
     for ((name, count), (expected_name, expected)) in counts.iter().zip(large.clone()) {
@@ -179,8 +184,9 @@ fn every_platform_makes_the_same_bytes() {
     assert_eq!(found, FINGERPRINTS);
 }
 
-const FINGERPRINTS: [&str; 7] = [
+const FINGERPRINTS: [&str; 8] = [
     "cafe c6cf9905b8189a25",
+    "runner 009adf8c6a864d71",
     "kitchen cf832d98f397872a",
     "bathroom f401c9e1fb9c7d16",
     "wall d0a6efcf7680eabe",
@@ -207,6 +213,9 @@ fn shares(name: &str) -> [f64; 2] {
 
 #[test]
 fn scenes_show_mirrors_and_glass_as_they_promise() {
+    // Sunglasses, rods and a cup; two bottles far away.
+    let [mirrors, glass] = shares("runner");
+    assert!((0.005..0.1).contains(&mirrors) && glass < 0.01, "{mirrors} {glass}");
     // Metal all over, with jars, glasses and a window; a mirror that fills a wall.
     let [mirrors, glass] = shares("kitchen");
     assert!((0.04..0.25).contains(&mirrors) && (0.005..0.1).contains(&glass), "{mirrors} {glass}");
@@ -217,7 +226,7 @@ fn scenes_show_mirrors_and_glass_as_they_promise() {
 
 #[test]
 fn the_doctor_warns_of_nothing_in_the_rooms() {
-    for name in ["kitchen", "bathroom"] {
+    for name in ["runner", "kitchen", "bathroom"] {
         let findings = examine(&builtin::to_scene(name).unwrap());
         let bad: Vec<_> = findings.iter().filter(|f| f.severity == Severity::Warning || f.topic == "winding").collect();
         assert!(bad.is_empty(), "{name}: {bad:?}");

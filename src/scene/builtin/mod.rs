@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Scenes of our own, made by deterministic code: a café, a kitchen and a bathroom to look at, and four tiny scenes for tests.
+//! Scenes of our own, made by deterministic code: a café, a finish line, a kitchen and a bathroom to look at, and four tiny scenes for tests.
 //!
 //! Each scene has a folder `scenes/NAME` with its `view.json` and the parameters of its generator; both are part of
 //! the library. The generators use `+ - * /` and square roots alone, so that every platform makes the same bytes.
@@ -17,6 +17,8 @@ pub mod paint;
 // Without the rooms, the café uses a few of them.
 #[cfg_attr(not(feature = "rooms"), allow(dead_code))]
 pub mod parts;
+#[cfg(feature = "rooms")]
+pub mod runner;
 #[cfg(test)]
 mod solid;
 pub mod tiny;
@@ -37,7 +39,11 @@ pub const NAMES: [&str; 5] = ["cafe", "wall", "spheres", "rods", "mirror-room"];
 
 /// The names of all built-in scenes.
 #[cfg(feature = "rooms")]
-pub const NAMES: [&str; 7] = ["cafe", "kitchen", "bathroom", "wall", "spheres", "rods", "mirror-room"];
+pub const NAMES: [&str; 8] = ["cafe", "runner", "kitchen", "bathroom", "wall", "spheres", "rods", "mirror-room"];
+
+/// Those of them that take large generators, which the Android library leaves out.
+#[cfg(feature = "rooms")]
+pub const ROOMS: [&str; 3] = ["runner", "kitchen", "bathroom"];
 
 /// Makes a built-in scene.
 ///
@@ -48,6 +54,11 @@ pub fn generate(name: &str) -> Result<Model> {
         "cafe" => cafe::generate(
             &parameters(name, include_str!("../../../scenes/cafe/parameters.json"))?,
             include_str!("../../../scenes/cafe/view.json"),
+        )?,
+        #[cfg(feature = "rooms")]
+        "runner" => runner::generate(
+            &parameters(name, include_str!("../../../scenes/runner/parameters.json"))?,
+            include_str!("../../../scenes/runner/view.json"),
         )?,
         #[cfg(feature = "rooms")]
         "kitchen" => kitchen::generate(
@@ -125,6 +136,7 @@ mod tests {
     fn changed(scene: &str, from: &str, to: &str) -> Result<Model> {
         let text = match scene {
             "cafe" => include_str!("../../../scenes/cafe/parameters.json"),
+            "runner" => include_str!("../../../scenes/runner/parameters.json"),
             "kitchen" => include_str!("../../../scenes/kitchen/parameters.json"),
             _ => include_str!("../../../scenes/bathroom/parameters.json"),
         };
@@ -132,6 +144,7 @@ mod tests {
         let text = text.replace(from, to);
         let model = match scene {
             "cafe" => cafe::generate(&parameters(scene, &text)?, "{}"),
+            "runner" => runner::generate(&parameters(scene, &text)?, "{}"),
             "kitchen" => kitchen::generate(&parameters(scene, &text)?, "{}"),
             _ => bathroom::generate(&parameters(scene, &text)?, "{}"),
         };
@@ -140,7 +153,7 @@ mod tests {
 
     #[test]
     fn parameters_out_of_range_are_refused_with_key_and_range() {
-        for scene in ["cafe", "kitchen", "bathroom"] {
+        for scene in ["cafe", "runner", "kitchen", "bathroom"] {
             assert!(changed(scene, "\"seed\": 2016", "\"seed\": 1").is_ok());
         }
         let cafe = [
@@ -150,6 +163,14 @@ mod tests {
             ("\"radius\": 0.38", "\"radius\": -1", "`tables.radius`"),
             ("\"seed\": 2016", "\"sead\": 2016", "scenes/cafe/parameters.json:2: unknown field `sead`"),
             ("\"leaves\": 34", "\"leaves\": -1", "scenes/cafe/parameters.json:"),
+        ];
+        let runner = [
+            ("\"cell\": 0.0222", "\"cell\": 0.0001", "`cell` is 0.0001; it must lie between"),
+            ("\"lane\": 1.22", "\"lane\": 3", "`lane` is 3"),
+            ("[0.0, -5.0]", "[9.0, -5.0]", "`hurdles` is 9"),
+            ("\"turns\": 0.02", "\"turns\": 1e9", "`runners.turns`"),
+            ("\"pose\": \"wins\"", "\"pose\": \"falls\"", "unknown variant `falls`"),
+            ("\"rod_sides\": 10", "\"rod_sides\": 1", "`rod_sides` is 1"),
         ];
         let kitchen = [
             ("\"wall_tile\": 0.12", "\"wall_tile\": 0", "`wall_tile` is 0; it must lie between"),
@@ -172,9 +193,12 @@ mod tests {
             ("\"stakes\": 30", "\"stakes\": 1", "`stakes` is 1"),
             ("\"leaves\"", "\"leafs\"", "unknown field `leafs`"),
         ];
-        for (scene, cases) in
-            [("cafe", cafe.as_slice()), ("kitchen", kitchen.as_slice()), ("bathroom", bathroom.as_slice())]
-        {
+        for (scene, cases) in [
+            ("cafe", cafe.as_slice()),
+            ("runner", runner.as_slice()),
+            ("kitchen", kitchen.as_slice()),
+            ("bathroom", bathroom.as_slice()),
+        ] {
             for (from, to, expected) in cases {
                 let message = changed(scene, from, to).unwrap_err().to_string();
                 assert!(message.contains(expected), "{message}");
@@ -186,12 +210,14 @@ mod tests {
     fn other_parameters_and_seeds_make_other_scenes() {
         for (scene, from, to) in [
             ("cafe", "\"glass_sides\": 21", "\"glass_sides\": 42"),
+            ("runner", "\"cell\": 0.0222", "\"cell\": 0.02"),
             ("kitchen", "\"small_sides\": 14", "\"small_sides\": 28"),
             ("bathroom", "\"towel_cells\": 34", "\"towel_cells\": 60"),
         ] {
             let base = changed(scene, "\"seed\": 2016", "\"seed\": 2016").unwrap();
             let other = changed(scene, "\"seed\": 2016", "\"seed\": 2017").unwrap();
-            assert!(base.groups != other.groups && base.textures != other.textures);
+            // Nothing but pictures is strewn at the finish line.
+            assert!((base.groups != other.groups) == (scene != "runner") && base.textures != other.textures);
             let finer = changed(scene, from, to).unwrap();
             assert!(finer.triangle_count() > base.triangle_count());
         }

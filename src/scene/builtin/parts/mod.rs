@@ -14,6 +14,7 @@ pub mod pictures;
 pub mod plants;
 pub mod plumbing;
 pub mod shell;
+pub mod smooth;
 pub mod walls;
 
 use glam::Vec3;

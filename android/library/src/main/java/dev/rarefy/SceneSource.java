@@ -31,7 +31,7 @@ public abstract class SceneSource {
 
   /**
    * A scene that comes with the library: cafe, spheres, rods, mirror-room or wall. The desktop's
-   * kitchen and bathroom are not in it; write them as files and make them assets.
+   * larger scenes, such as kitchen, are not in it; write them as files and make them assets.
    */
   public static SceneSource builtin(String name) {
     Objects.requireNonNull(name, "name");
