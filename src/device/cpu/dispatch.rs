@@ -5,10 +5,12 @@ use fearless_simd::Level;
 use rayon::prelude::*;
 
 use super::lanes::{Lanes, MOST_LANES, Mask};
+use super::pack::pack_count;
 use super::packet::Stack;
 use super::ray_tree::{Pixels, trace_pixels};
 use super::similarity::Check;
 use crate::device::stage::{Kernel, Stage};
+use crate::device::twin::correct_tail::correct_tail;
 use crate::device::twin::ray_tree::needs_correction_ray;
 use crate::device::twin::{self, FrameBuffers, SceneArgs};
 use crate::error::Result;
@@ -90,6 +92,7 @@ impl Work for Nothing {
 }
 
 /// A launch.
+#[derive(Clone, Copy)]
 struct WideLaunch<'a> {
     stage: Stage,
     kernel: Kernel,
@@ -112,7 +115,12 @@ pub fn run(
     monitor: &Monitor,
 ) -> Result<()> {
     // Counters are those of the scalar walk: a packet looks into cells that a ray by itself would spare.
-    let is_wide = matches!(kernel, Kernel::Trace | Kernel::Check) && buffers.counters.is_empty();
+    let is_wide = buffers.counters.is_empty()
+        && match kernel {
+            Kernel::Trace | Kernel::Check | Kernel::CorrectTail => true,
+            Kernel::PackCount => !step.flags.contains(StepFlags::PROBES),
+            _ => false,
+        };
     let launch = WideLaunch { stage, kernel, scene, step, buffers, monitor };
     match is_wide.then(|| width.run(launch)).flatten() {
         Some(()) => monitor.check(),
@@ -126,11 +134,24 @@ impl Work for WideLaunch<'_> {
     fn run<L: Lanes, const K: usize>(self, l: L) {
         match (self.kernel, self.stage) {
             (Kernel::Check, _) => self.check(l),
+            (Kernel::PackCount, _) => (0..self.step.item_count.div_ceil(32))
+                .into_par_iter()
+                .with_min_len(CHUNKS_AT_ONCE)
+                .for_each(|chunk| pack_count(self.scene, self.step, chunk, self.buffers)),
+            (Kernel::CorrectTail, _) => correct_tail(self.scene, self.step, self.buffers, |round| {
+                WideLaunch { step: round, ..self }.trace_list::<L, K>(l);
+            }),
             (_, Stage::Step1) => self.trace_grid::<L, K>(l),
             _ => self.trace_list::<L, K>(l),
         }
     }
 }
+
+/// Chunks that a thread packs at least.
+const CHUNKS_AT_ONCE: usize = 64;
+
+/// Packets that are traced sooner than another thread wakes up.
+const PACKETS_ALONE: usize = 4;
 
 /// Pixels of a packet's side: packets are as square as they can be.
 fn packet_shape(rays: u32) -> (u32, u32) {
@@ -209,25 +230,30 @@ impl WideLaunch<'_> {
     fn trace_list<L: Lanes, const K: usize>(&self, l: L) {
         let step = self.step;
         let rays = (K * L::COUNT) as u32;
-        (0..step.item_count.div_ceil(rays)).into_par_iter().for_each_init(
-            || Stack::<L, K>::new(l),
-            |stack, packet| {
-                if self.is_cancelled() {
-                    return;
+        let packets = 0..step.item_count.div_ceil(rays);
+        let new_stack = || Stack::<L, K>::new(l);
+        let trace = |stack: &mut Stack<L, K>, packet: u32| {
+            if self.is_cancelled() {
+                return;
+            }
+            let mut pixels = Pixels::<K>::NONE;
+            for i in 0..rays.min(step.item_count - packet * rays) {
+                let pixel = self.buffers.list.get(step.list_offset + packet * rays + i);
+                let at = (pixel & 0xffff, pixel >> 16);
+                if step.pixel_class != CLASS_CORRECTED
+                    || needs_correction_ray(self.scene.frame, step, &self.buffers.attributes, at)
+                {
+                    pixels.set::<L>(i as usize, at);
                 }
-                let mut pixels = Pixels::<K>::NONE;
-                for i in 0..rays.min(step.item_count - packet * rays) {
-                    let pixel = self.buffers.list.get(step.list_offset + packet * rays + i);
-                    let at = (pixel & 0xffff, pixel >> 16);
-                    if step.pixel_class != CLASS_CORRECTED
-                        || needs_correction_ray(self.scene.frame, step, &self.buffers.attributes, at)
-                    {
-                        pixels.set::<L>(i as usize, at);
-                    }
-                }
-                self.trace(l, &pixels, step.pixel_class, stack);
-            },
-        );
+            }
+            self.trace(l, &pixels, step.pixel_class, stack);
+        };
+        if packets.len() <= PACKETS_ALONE {
+            let mut stack = new_stack();
+            packets.for_each(|packet| trace(&mut stack, packet));
+        } else {
+            packets.into_par_iter().for_each_init(new_stack, trace);
+        }
     }
 
     fn trace<L: Lanes, const K: usize>(&self, l: L, pixels: &Pixels<K>, class: u32, stack: &mut Stack<L, K>) {

@@ -14,6 +14,7 @@
 pub mod dispatch;
 pub mod executor;
 mod lanes;
+mod pack;
 mod packet;
 mod planes;
 mod ray_tree;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Textures, local shading and sRGB output: `device/twin/shade.rs` lane by lane.
 
-use super::lanes::{Array, Floats, Lanes, MOST_LANES, Mask, Words, lanes_of};
+use super::lanes::{Array, Floats, Lanes, MOST_LANES, Mask, Words, inlined, lanes_of};
 use super::vectors::{VectorArray, Vectors, fraction, pow_poly};
 use crate::device::twin::SceneArgs;
 use crate::device::twin::scene_args::xyz;
-use crate::device::twin::shade::{srgb_word, texel_corners};
+use crate::device::twin::shade::{srgb_word, texel_rgb};
 use crate::layout::NO_TEXTURE;
 
 /// Bilinear, repeating samples of textures `ids` at `(s, t)` in `[0, 1)`, in `lanes`.
@@ -17,19 +17,39 @@ pub fn sample_textures<L: Lanes>(
     (s, t): (Floats<L>, Floats<L>),
     lanes: Mask<L>,
 ) -> Vectors<L> {
-    let (ss, ts) = (s.to_array(), t.to_array());
-    let mut corners = [VectorArray::zeros(), VectorArray::zeros(), VectorArray::zeros(), VectorArray::zeros()];
-    let (mut wx, mut wy) = ([0.0; MOST_LANES], [0.0; MOST_LANES]);
+    let (mut offsets, mut widths, mut heights) = ([0; MOST_LANES], [1; MOST_LANES], [1; MOST_LANES]);
     for lane in lanes_of(lanes.bits()) {
         let lane = lane % MOST_LANES;
-        let (texels, weights) = texel_corners(scene, ids[lane], ss[lane], ts[lane]);
-        (wx[lane], wy[lane]) = weights;
-        for (corner, texel) in corners.iter_mut().zip(texels) {
-            corner.set(lane, &texel.to_array());
-        }
+        let texture = &scene.textures[ids[lane] as usize];
+        (offsets[lane], widths[lane], heights[lane]) = (texture.offset, texture.width, texture.height);
+    }
+    let one = Floats::splat(l, 1.0);
+    let place = inlined(
+        #[inline(always)]
+        |at: Floats<L>, size: &Array<u32>| {
+            let size = Words::from_array(l, size);
+            let at = at * size.signed_to_floats() - Floats::splat(l, 0.5);
+            let whole = at.floor();
+            // Left of the first texel, which as an unsigned word is beyond them all, lies the last one.
+            let (low, high) = (whole.truncated(), whole.truncated() + Words::splat(l, 1));
+            let last = size - Words::splat(l, 1);
+            let low = low.lt(last).select_words(low, last);
+            let high = high.lt(size).select_words(high, Words::splat(l, 0));
+            (low.to_array(), high.to_array(), at - whole)
+        },
+    );
+    let ((x0, x1, wx), (y0, y1, wy)) = (place(s, &widths), place(one - t, &heights));
+    let mut corners = [VectorArray::zeros(), VectorArray::zeros(), VectorArray::zeros(), VectorArray::zeros()];
+    for lane in lanes_of(lanes.bits()) {
+        let lane = lane % MOST_LANES;
+        let (upper, lower) = (offsets[lane] + y0[lane] * widths[lane], offsets[lane] + y1[lane] * widths[lane]);
+        let (x0, x1) = (x0[lane], x1[lane]);
+        corners[0].set(lane, &texel_rgb(scene, upper + x0).to_array());
+        corners[1].set(lane, &texel_rgb(scene, upper + x1).to_array());
+        corners[2].set(lane, &texel_rgb(scene, lower + x0).to_array());
+        corners[3].set(lane, &texel_rgb(scene, lower + x1).to_array());
     }
     let [a, b, c, e] = [corners[0].get(l), corners[1].get(l), corners[2].get(l), corners[3].get(l)];
-    let (wx, wy) = (Floats::from_array(l, &wx), Floats::from_array(l, &wy));
     let (top, bottom) = (a + (b - a) * wx, c + (e - c) * wx);
     top + (bottom - top) * wy
 }

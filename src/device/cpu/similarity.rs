@@ -2,20 +2,12 @@
 //! The seven checks and the interpolation for vectors of pixels: `device/twin/similarity.rs` lane by lane.
 
 use super::lanes::{Array, Floats, Lanes, MOST_LANES, Mask, Words, inlined, lanes_of};
-use super::planes::{WideAttributes, gcol_distance, load_attributes, scatter, store_attributes};
-use super::shade::{ShadePoints, shade_local, srgb_words};
-use super::vectors::{Vectors, fraction};
+use super::planes::{WideAttributes, gather, gcol_distance, load_attributes, scatter, store_attributes};
+use super::shade::{ShadePoints, sample_textures, shade_local, srgb_words};
+use super::vectors::{VectorArray, Vectors, fraction};
 use crate::device::twin::scene_args::xyz;
-use crate::device::twin::similarity::texture_between;
-use crate::device::twin::{FrameBuffers, SceneArgs, planes};
+use crate::device::twin::{FrameBuffers, SceneArgs};
 use crate::layout::*;
-
-/// References of a vector of pixels: where they lie in a plane, and what they hit.
-#[derive(Clone, Copy)]
-struct References<L: Lanes> {
-    at: Array<u32>,
-    a: WideAttributes<L>,
-}
 
 /// A launch of `check`.
 #[derive(Clone, Copy)]
@@ -56,16 +48,35 @@ impl<L: Lanes> Check<'_, L> {
         lanes.select_words(self.word(word), self.word(0))
     }
 
-    /// What the pixels at `(x + dx, y + dy)` hit, in `lanes`.
+    /// Where the pixels at `(x + dx, y)` lie in a plane, in `lanes`.
     #[inline(always)]
-    fn references(&self, x: &Array<u32>, y: u32, dx: i64, lanes: Mask<L>) -> References<L> {
+    fn places(&self, x: &Array<u32>, y: u32, dx: i64, lanes: Mask<L>) -> Array<u32> {
         let mut at = [0; MOST_LANES];
         for lane in lanes_of(lanes.bits()) {
             let lane = lane % MOST_LANES;
             at[lane] = plane_index(self.scene.frame, (i64::from(x[lane]) + dx) as u32, y);
         }
-        let a = load_attributes(self.l, &self.buffers.attributes, self.scene.frame.plane_pitch, &at);
-        References { at, a }
+        at
+    }
+
+    /// What pixels hit.
+    #[inline(always)]
+    fn references(&self, at: &Array<u32>) -> WideAttributes<L> {
+        load_attributes(self.l, &self.buffers.attributes, self.scene.frame.plane_pitch, at)
+    }
+
+    /// Lanes that another object at `at` than `object` does not decide: of most other pairs nothing else must be read.
+    #[inline(always)]
+    fn same_object(&self, object: Words<L>, at: &Array<u32>, lanes: Mask<L>) -> Mask<L> {
+        if !lanes.any() || !self.step.tests.contains(FailMask::G1) {
+            return lanes;
+        }
+        lanes & self.object(at).equals(object)
+    }
+
+    #[inline(always)]
+    fn object(&self, at: &Array<u32>) -> Words<L> {
+        gather(self.l, &self.buffers.attributes, PLANE_OBJECT * self.scene.frame.plane_pitch, at)
     }
 
     /// One word of the material of each lane's object.
@@ -103,35 +114,50 @@ impl<L: Lanes> Check<'_, L> {
         wraps(a.s, b.s) | wraps(a.t, b.t)
     }
 
-    /// Lanes in which the texture seen in a mirror or behind glass looks different midway: few have one.
+    /// Lanes in which the texture of what is seen in a mirror or behind glass looks different midway from the references' mean.
     #[inline(always)]
-    fn texture_between(&self, a: &References<L>, b: &References<L>, lanes: Mask<L>) -> Mask<L> {
-        let l = self.l;
-        if !self.step.flags.contains(StepFlags::BEHIND) {
-            return Mask::splat(l, false);
+    fn texture_between(&self, a: &WideAttributes<L>, b: &WideAttributes<L>, lanes: Mask<L>) -> Mask<L> {
+        let (l, scene, step) = (self.l, self.scene, self.step);
+        let none = Mask::splat(l, false);
+        let same = a.behind.equals(b.behind).without(a.behind.equals(self.word(NO_OBJECT)));
+        let mut lanes = lanes & same;
+        if !step.flags.contains(StepFlags::BEHIND) || !lanes.any() {
+            return none;
         }
-        let same = a.a.behind.equals(b.a.behind).without(a.a.behind.equals(self.word(NO_OBJECT)));
-        let mut bits = 0;
-        let objects = a.a.object.to_array();
-        for lane in lanes_of((lanes & same).bits()) {
-            let lane = lane % MOST_LANES;
-            let (planes, pitch) = (&self.buffers.attributes, self.scene.frame.plane_pitch);
-            let (p, q) = (
-                planes::load_attributes(planes, pitch, a.at[lane]),
-                planes::load_attributes(planes, pitch, b.at[lane]),
-            );
-            let material = self.scene.object_materials[objects[lane] as usize];
-            let differs = texture_between(self.scene, self.step, &self.scene.materials[material as usize], &p, &q);
-            bits |= u32::from(differs) << lane;
+        let textures = self.of_objects(
+            a.behind,
+            lanes,
+            #[inline(always)]
+            |m| m.diffuse_texture,
+        );
+        let t_tex = self.splat(step.t_tex);
+        let (bs, bt) = (unwrap(l, a.s, b.s), unwrap(l, a.t, b.t));
+        lanes = lanes.without(textures.equals(self.word(NO_TEXTURE)));
+        lanes = lanes & (bs - a.s).abs().le(t_tex) & (bt - a.t).abs().le(t_tex);
+        if !lanes.any() {
+            return none;
         }
-        Mask::from_bits(l, bits)
+        let (objects, textures) = (a.object.to_array(), textures.to_array());
+        let mut weight = VectorArray::zeros();
+        for lane in lanes_of(lanes.bits()) {
+            let m = &scene.materials[scene.object_materials[objects[lane % MOST_LANES] as usize] as usize];
+            weight.set(lane, if m.surface == SURFACE_MIRROR { &m.reflectance } else { &m.transmission });
+        }
+        let sample = inlined(
+            #[inline(always)]
+            |s: Floats<L>, t: Floats<L>| sample_textures(l, scene, &textures, (fraction(l, s), fraction(l, t)), lanes),
+        );
+        let half = self.splat(0.5);
+        let mean = (sample(a.s, a.t) + sample(bs, bt)) * half;
+        let midway = sample((a.s + bs) * half, (a.t + bt) * half);
+        let weight = weight.get(l);
+        lanes.without(gcol_distance(l, mean * weight, midway * weight, step.flags).le(self.splat(step.t_gcol)))
     }
 
     /// The fail mask of each pair of references: bit `FAIL_*` set where that test fails and is switched on.
     #[inline(always)]
-    fn similarity_checks(&self, p: &References<L>, q: &References<L>, lanes: Mask<L>) -> Words<L> {
+    fn similarity_checks(&self, a: &WideAttributes<L>, b: &WideAttributes<L>, lanes: Mask<L>) -> Words<L> {
         let (l, step) = (self.l, self.step);
-        let (a, b) = (&p.a, &q.a);
         let other_object = !a.object.equals(b.object);
         let nothing = a.object.equals(self.word(NO_OBJECT)).without(other_object);
         let hits = lanes.without(other_object | nothing);
@@ -165,7 +191,7 @@ impl<L: Lanes> Check<'_, L> {
             }
             fails = fails | self.bits_in(!a.shadow_bits.equals(b.shadow_bits), FAIL_SH);
             let alike = gcol_distance(l, a.gcol, b.gcol, step.flags).le(self.splat(step.t_gcol));
-            let between = self.texture_between(p, q, hits & alike);
+            let between = self.texture_between(a, b, hits & alike);
             fails = fails | self.bits_in(!alike | between, FAIL_GC);
             mask = mask | hits.select_words(fails, self.word(0));
         }
@@ -174,7 +200,7 @@ impl<L: Lanes> Check<'_, L> {
 
     /// Lanes in which two references are alike.
     #[inline(always)]
-    fn alike(&self, p: &References<L>, q: &References<L>, lanes: Mask<L>) -> Mask<L> {
+    fn alike(&self, p: &WideAttributes<L>, q: &WideAttributes<L>, lanes: Mask<L>) -> Mask<L> {
         if !lanes.any() {
             return lanes;
         }
@@ -220,7 +246,7 @@ impl<L: Lanes> Check<'_, L> {
     fn other_pairs(
         &self,
         (x, y): (&Array<u32>, u32),
-        (a, b): (&mut References<L>, &mut References<L>),
+        (a, b): (&mut WideAttributes<L>, &mut WideAttributes<L>),
         lanes: Mask<L>,
     ) -> Mask<L> {
         let (l, step) = (self.l, self.step);
@@ -235,15 +261,19 @@ impl<L: Lanes> Check<'_, L> {
             return none;
         }
         let side = i64::from(dx);
+        let alike_at = inlined(
+            #[inline(always)]
+            |c: &WideAttributes<L>, dx: i64, y: u32, lanes: Mask<L>| {
+                let at = self.places(x, y, dx, lanes);
+                let lanes = self.same_object(c.object, &at, lanes);
+                if lanes.any() { self.alike(c, &self.references(&at), lanes) } else { none }
+            },
+        );
         let wide = inlined(
             #[inline(always)]
-            |c: &References<L>, y: u32| {
-                let left = self.alike(c, &self.references(x, y, -side, open), open);
-                let rest = open.without(left);
-                if !rest.any() {
-                    return left;
-                }
-                left | self.alike(c, &self.references(x, y, side, rest), rest)
+            |c: &WideAttributes<L>, y: u32| {
+                let left = alike_at(c, -side, y, open);
+                left | alike_at(c, side, y, open.without(left))
             },
         );
         let (a_is_wide, b_is_wide) = (wide(a, y - dy), wide(b, y + dy));
@@ -251,18 +281,20 @@ impl<L: Lanes> Check<'_, L> {
         let mut found = none;
         let (old_a, old_b) = (*a, *b);
         for (left, right) in [(y, y), (y - dy, y + dy), (y + dy, y - dy)] {
-            if !open.any() {
-                break;
+            let (at_p, at_q) = (self.places(x, left, -side, open), self.places(x, right, side, open));
+            let pair = self.same_object(self.object(&at_p), &at_q, open);
+            if !pair.any() {
+                continue;
             }
-            let (p, q) = (self.references(x, left, -side, open), self.references(x, right, side, open));
-            let pair = self.alike(&p, &q, open);
+            let (p, q) = (self.references(&at_p), self.references(&at_q));
+            let pair = self.alike(&p, &q, pair);
             let by_a = pair & b_is_wide;
             let by_a = self.alike(&old_a, &q, self.alike(&old_a, &p, by_a));
             let by_b = (pair & a_is_wide).without(by_a);
             let by_b = self.alike(&old_b, &q, self.alike(&old_b, &p, by_b));
             let joins = by_a | by_b;
             for (to, from) in [(&mut *a, &p), (&mut *b, &q)] {
-                to.a = to.a.replaced(joins, &from.a);
+                *to = to.replaced(joins, from);
             }
             found = found | joins;
             open = open.without(joins);
@@ -296,8 +328,8 @@ impl<L: Lanes> Check<'_, L> {
             return;
         }
         let dx = i64::from(step.reference_dx);
-        let mut a = self.references(x, y - step.reference_dy, -dx, inner);
-        let mut b = self.references(x, y + step.reference_dy, dx, inner);
+        let mut a = self.references(&self.places(x, y - step.reference_dy, -dx, inner));
+        let mut b = self.references(&self.places(x, y + step.reference_dy, dx, inner));
         let mask = self.similarity_checks(&a, &b, inner);
         let mut pending = inner.without(mask.equals(self.word(0)));
         if pending.any() {
@@ -314,7 +346,7 @@ impl<L: Lanes> Check<'_, L> {
                     hits.without(kind.equals(self.word(SURFACE_OPAQUE)))
                 },
             );
-            let secondary = sends(a.a.object) | sends(b.a.object);
+            let secondary = sends(a.object) | sends(b.object);
             if step.flags.contains(StepFlags::OTHER_PAIRS) {
                 pending = pending.without(self.other_pairs((x, y), (&mut a, &mut b), pending));
             }
@@ -325,7 +357,7 @@ impl<L: Lanes> Check<'_, L> {
         if !interpolated.any() {
             return;
         }
-        let m = self.interpolate(&a.a, &b.a);
+        let m = self.interpolate(&a, &b);
         store_attributes(l, planes, pitch, &at, &m, self.word(CLASS_INTERPOLATED), interpolated);
         let mut color = Vectors::splat(l, xyz(frame.background));
         let hits = interpolated.without(m.object.equals(self.word(NO_OBJECT)));

@@ -5,7 +5,7 @@ use std::ops::{Add, Mul, Neg, Sub};
 
 use glam::Vec3;
 
-use super::lanes::{Array, Floats, Lanes, MOST_LANES, Mask, Words};
+use super::lanes::{Array, Floats, Lanes, MOST_LANES, Mask, Words, inlined};
 
 /// A vector for each lane.
 #[derive(Debug, Clone, Copy)]
@@ -133,7 +133,10 @@ pub fn unpack_normal<L: Lanes>(l: L, packed: Words<L>) -> Vectors<L> {
     let y = packed.shifted_right_signed(16).signed_to_floats() * (1.0 / 32767.0);
     let z = Floats::splat(l, 1.0) - x.abs() - y.abs();
     let fold = (-z).max2(zero);
-    let folded = |v: Floats<L>| v.ge(zero).select(v - fold, v + fold);
+    let folded = inlined(
+        #[inline(always)]
+        |v: Floats<L>| v.ge(zero).select(v - fold, v + fold),
+    );
     Vectors { x: folded(x), y: folded(y), z }.normalize(l)
 }
 
@@ -149,14 +152,17 @@ pub fn pack_normal<L: Lanes>(l: L, n: Vectors<L>) -> Words<L> {
     let fx = x.ge(zero).select(one - ay, ay - one);
     let fy = y.ge(zero).select(one - ax, ax - one);
     let most = Floats::splat(l, 32767.0);
-    let quantise = |v: Floats<L>| {
-        // Half away from zero, as `round` does: exact, since values stay below 2^23.
-        let v = v * 32767.0;
-        let whole = v.truncated().signed_to_floats();
-        let away = (v - whole).abs().ge(Floats::splat(l, 0.5)).select(one.with_sign_of(v), zero);
-        let rounded = whole + away;
-        rounded.max2(-most).min2(most).truncated() & Words::splat(l, 0xffff)
-    };
+    let quantise = inlined(
+        #[inline(always)]
+        |v: Floats<L>| {
+            // Half away from zero, as `round` does: exact, since values stay below 2^23.
+            let v = v * 32767.0;
+            let whole = v.truncated().signed_to_floats();
+            let away = (v - whole).abs().ge(Floats::splat(l, 0.5)).select(one.with_sign_of(v), zero);
+            let rounded = whole + away;
+            rounded.max2(-most).min2(most).truncated() & Words::splat(l, 0xffff)
+        },
+    );
     quantise(below.select(fx, x)) | quantise(below.select(fy, y)).shifted_left(16)
 }
 

@@ -2,7 +2,7 @@
 //! Twin of `kernels/common/bridge.clh`: pixels between two parts of something thin.
 
 use super::FrameBuffers;
-use super::planes::{color_index, hits_differ, load_attributes, plane_index};
+use super::planes::{StoredHit, color_index, hits_differ, plane_index};
 use crate::layout::*;
 
 /// What a launch of step4 looks at.
@@ -17,14 +17,16 @@ pub struct Hits<'a> {
 }
 
 impl Hits<'_> {
+    /// What the pixel `(x, y)` hit.
+    pub fn of(&self, (x, y): (u32, u32)) -> StoredHit<'_> {
+        let at = plane_index(self.frame, x, y);
+        StoredHit { planes: &self.buffers.attributes, pitch: self.frame.plane_pitch, at }
+    }
+
     /// Whether the hits of two pixels differ.
     pub fn differ(&self, a: (u32, u32), b: (u32, u32)) -> bool {
-        let load = |(x, y): (u32, u32)| {
-            let at = plane_index(self.frame, x, y);
-            load_attributes(&self.buffers.attributes, self.frame.plane_pitch, at)
-        };
         let color = |(x, y): (u32, u32)| self.buffers.color.get(color_index(self.frame, x, y));
-        hits_differ(self.step, &load(a), &load(b), color(a), color(b))
+        hits_differ(self.step, &self.of(a), &self.of(b), || color(a), || color(b))
     }
 
     /// Whether the pixels above and below `(x, y)` both show something else than it does.

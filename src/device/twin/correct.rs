@@ -2,7 +2,7 @@
 //! Twin of `kernels/correct.cl` and `kernels/common/correction.clh`: which pixels a round of post-correction traces.
 
 use super::bridge::{Hits, bridged_pixel};
-use super::planes::{color_index, hits_differ, load_attributes, plane_index, surfaces_differ};
+use super::planes::{plane_index, surfaces_differ};
 use super::{FrameBuffers, SceneArgs, pack};
 use crate::layout::*;
 
@@ -41,19 +41,13 @@ impl SameAround {
 /// Whether pixel `(x, y)` spreads to its neighbour `(nx, ny)`.
 pub fn spreads(hits: Hits, (x, y): (u32, u32), (nx, ny): (u32, u32)) -> bool {
     let Hits { frame, step, buffers } = hits;
-    let planes = &buffers.attributes;
-    let pitch = frame.plane_pitch;
-    let (at, to) = (plane_index(frame, x, y), plane_index(frame, nx, ny));
-    let from_class = planes.get(PLANE_CLASS * pitch + at) & CLASS_MASK;
+    let (a, b) = (hits.of((x, y)), hits.of((nx, ny)));
+    let class = |at: u32| buffers.attributes.get(PLANE_CLASS * frame.plane_pitch + at) & CLASS_MASK;
+    let from_class = class(a.at);
     if from_class != CLASS_TRACED && from_class != CLASS_CORRECTED {
         return false;
     }
-    if planes.get(PLANE_CLASS * pitch + to) & CLASS_MASK != CLASS_INTERPOLATED {
-        return false;
-    }
-    let (a, b) = (load_attributes(planes, pitch, at), load_attributes(planes, pitch, to));
-    let color = |x: u32, y: u32| buffers.color.get(color_index(frame, x, y));
-    if !hits_differ(step, &a, &b, color(x, y), color(nx, ny)) {
+    if class(b.at) != CLASS_INTERPOLATED || !hits.differ((x, y), (nx, ny)) {
         return false;
     }
     !step.flags.contains(StepFlags::THIN_ONLY)

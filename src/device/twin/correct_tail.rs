@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Twin of `kernels/correct_tail.cl`: rounds of few sources in one launch.
 
-use rayon::prelude::*;
-
 use super::bridge::Hits;
 use super::correct::{claimed_by, mark_item, target};
-use super::trace::trace_list;
 use super::{FrameBuffers, SceneArgs};
 use crate::layout::*;
 
-/// The work-group of `correct_tail`.
-pub fn correct_tail(scene: &SceneArgs, step: &StepParams, buffers: &FrameBuffers) {
+/// The work-group of `correct_tail`. `trace` runs a list launch of `trace` with the given parameters.
+pub fn correct_tail(scene: &SceneArgs, step: &StepParams, buffers: &FrameBuffers, trace: impl Fn(&StepParams)) {
     let mut round = StepParams { pixel_class: CLASS_CORRECTED, ..*step };
     let mut rounds = 0;
     while rounds < TAIL_ROUNDS && round.item_count != 0 && round.item_count <= 4 * TAIL_SOURCES {
@@ -25,8 +22,7 @@ pub fn correct_tail(scene: &SceneArgs, step: &StepParams, buffers: &FrameBuffers
             buffers.list.set(round.list_offset + total, target(hits, i));
             total += 1;
         }
-        let trace = StepParams { item_count: total, ..round };
-        (0..total).into_par_iter().for_each(|item| trace_list(scene, &trace, item, buffers));
+        trace(&StepParams { item_count: total, ..round });
         round.source_offset = round.list_offset;
         round.list_offset += total;
         round.item_count = 4 * total;

@@ -11,7 +11,7 @@ pub mod bridge;
 mod check;
 mod correct;
 mod correct_sweep;
-mod correct_tail;
+pub mod correct_tail;
 pub mod executor;
 pub mod known_shadows;
 pub mod pack;
@@ -90,19 +90,27 @@ pub fn run(
                 monitor.tell(done as f32 / step.grid_height as f32);
             });
         }
-        Items::OneGroup => correct_tail::correct_tail(scene, step, buffers),
+        Items::OneGroup => correct_tail::correct_tail(scene, step, buffers, |round| {
+            (0..round.item_count).into_par_iter().for_each(|item| trace::trace_list(scene, round, item, buffers));
+        }),
         Items::List | Items::Chunks | Items::Groups => {
             let count = match kernel.items(stage) {
                 Items::Chunks => step.item_count.div_ceil(32),
                 Items::Groups => step.item_count.div_ceil(step.scan_group),
                 _ => step.item_count,
             };
-            // Lists are cut into equal parts, of which the threads begin many before one ends: no share is told.
-            (0..count).into_par_iter().with_min_len(ITEMS_AT_ONCE as usize).for_each(|i| {
+            let item = |i| {
                 if !cancelled() {
                     item_1d(kernel, scene, step, i, buffers);
                 }
-            });
+            };
+            // Correction has many launches of a few items, which are done sooner than another thread wakes up.
+            if count <= ITEMS_AT_ONCE {
+                (0..count).for_each(item);
+            } else {
+                // Lists are cut into equal parts, of which the threads begin many before one ends: no share is told.
+                (0..count).into_par_iter().with_min_len(ITEMS_AT_ONCE as usize).for_each(item);
+            }
         }
     }
     monitor.check()

@@ -163,27 +163,92 @@ pub fn look_different(a: u32, b: u32, t_visible: u32) -> bool {
     [0, 8, 16].iter().any(|shift| ((a >> shift) & 255).abs_diff((b >> shift) & 255) >= t_visible)
 }
 
+/// What post-correction compares of a hit.
+#[allow(missing_docs)] // members of `Attributes`
+pub trait Compared {
+    fn object(&self) -> u32;
+    fn shadow_bits(&self) -> u32;
+    fn normal(&self) -> Vec3;
+    fn gcol(&self) -> Vec3;
+}
+
+impl Compared for Attributes {
+    fn object(&self) -> u32 {
+        self.object
+    }
+    fn shadow_bits(&self) -> u32 {
+        self.shadow_bits
+    }
+    fn normal(&self) -> Vec3 {
+        self.normal
+    }
+    fn gcol(&self) -> Vec3 {
+        self.gcol
+    }
+}
+
+/// The hit of the pixel at plane index `at`, of which is read what is asked for: most pixels differ in the first word, or show
+/// the same colour.
+#[derive(Debug, Clone, Copy)]
+pub struct StoredHit<'a> {
+    /// The attributes.
+    pub planes: &'a Words,
+    /// Words from one plane to the next.
+    pub pitch: u32,
+    /// Where the pixel lies within a plane.
+    pub at: u32,
+}
+
+impl StoredHit<'_> {
+    fn get(&self, plane: u32) -> u32 {
+        self.planes.get(plane * self.pitch + self.at)
+    }
+}
+
+impl Compared for StoredHit<'_> {
+    fn object(&self) -> u32 {
+        self.get(PLANE_OBJECT)
+    }
+    fn shadow_bits(&self) -> u32 {
+        self.get(PLANE_SHADOW)
+    }
+    fn normal(&self) -> Vec3 {
+        unpack_normal(self.get(PLANE_NORMAL))
+    }
+    fn gcol(&self) -> Vec3 {
+        Vec3::from([PLANE_GCOL_R, PLANE_GCOL_G, PLANE_GCOL_B].map(|plane| f32::from_bits(self.get(plane))))
+    }
+}
+
 /// Whether post-correction takes two hits to be of different things.
-pub fn hits_differ(step: &StepParams, a: &Attributes, b: &Attributes, color_a: u32, color_b: u32) -> bool {
-    if a.object != b.object {
+pub fn hits_differ(
+    step: &StepParams,
+    a: &impl Compared,
+    b: &impl Compared,
+    color_a: impl FnOnce() -> u32,
+    color_b: impl FnOnce() -> u32,
+) -> bool {
+    let object = a.object();
+    if object != b.object() {
         return true;
     }
-    if a.object == NO_OBJECT || !look_different(color_a, color_b, step.t_visible) {
+    if object == NO_OBJECT || !look_different(color_a(), color_b(), step.t_visible) {
         return false;
     }
-    if step.flags.contains(StepFlags::COMPARE_SHADOW) && a.shadow_bits != b.shadow_bits {
+    if step.flags.contains(StepFlags::COMPARE_SHADOW) && a.shadow_bits() != b.shadow_bits() {
         return true;
     }
     // Comparisons are written so that NaN differs, as in the kernel.
     step.flags.contains(StepFlags::COMPARE_SHADING)
-        && (!(dot(a.normal, b.normal) >= step.t_norm) || !(gcol_distance(a.gcol, b.gcol, step.flags) <= step.t_gcol))
+        && (!(dot(a.normal(), b.normal()) >= step.t_norm)
+            || !(gcol_distance(a.gcol(), b.gcol(), step.flags) <= step.t_gcol))
 }
 
 /// Of two hits that differ, whether they differ in more than reflected colours.
-pub fn surfaces_differ(step: &StepParams, a: &Attributes, b: &Attributes) -> bool {
-    a.object != b.object
-        || (step.flags.contains(StepFlags::COMPARE_SHADOW) && a.shadow_bits != b.shadow_bits)
-        || (step.flags.contains(StepFlags::COMPARE_SHADING) && !(dot(a.normal, b.normal) >= step.t_norm))
+pub fn surfaces_differ(step: &StepParams, a: &impl Compared, b: &impl Compared) -> bool {
+    a.object() != b.object()
+        || (step.flags.contains(StepFlags::COMPARE_SHADOW) && a.shadow_bits() != b.shadow_bits())
+        || (step.flags.contains(StepFlags::COMPARE_SHADING) && !(dot(a.normal(), b.normal()) >= step.t_norm))
 }
 
 /// Writes the work counters of the pixel at plane index `at`, if counters are kept.

@@ -6,8 +6,7 @@ use glam::Vec3;
 use super::FrameBuffers;
 use super::known_shadows::{KnownShadows, known_shadows};
 use super::planes::{
-    Attributes, Words, color_index, hits_differ, load_attributes, pixel_direction, plane_index, store_attributes,
-    store_work,
+    Attributes, StoredHit, Words, color_index, hits_differ, pixel_direction, plane_index, store_attributes, store_work,
 };
 use super::scene_args::{SceneArgs, Work, xyz};
 use super::shade::{ShadePoint, shade_local, srgb_word};
@@ -280,12 +279,9 @@ pub fn trace_pixel(scene: &SceneArgs, x: u32, y: u32, pixel_class: u32, step: &S
         let planes = &out.attributes;
         let mut new_class = pixel_class;
         if pixel_class == CLASS_CORRECTED {
-            let before = load_attributes(planes, pitch, at);
-            new_class = if hits_differ(step, &a, &before, out.color.get(color_index(frame, x, y)), word) {
-                CLASS_CORRECTED
-            } else {
-                CLASS_CONFIRMED
-            };
+            let before = StoredHit { planes, pitch, at };
+            let differs = hits_differ(step, &a, &before, || out.color.get(color_index(frame, x, y)), || word);
+            new_class = if differs { CLASS_CORRECTED } else { CLASS_CONFIRMED };
         }
         let mask = if pixel_class == CLASS_BASE { 0 } else { planes.get(PLANE_CLASS * pitch + at) & CLASS_CHECKED };
         store_attributes(planes, pitch, at, &a, mask | new_class);

@@ -7,7 +7,9 @@ use super::scene_args::{SceneArgs, xyz};
 use crate::layout::{NO_TEXTURE, SRGB_FIRST_BUCKET, SRGB_LEAST, TABLE_SRGB_GUESS, TABLE_SRGB_THRESHOLD};
 use crate::math::{dot, fraction, max2, min2, normalize, pow_poly};
 
-fn texel_rgb(scene: &SceneArgs, at: u32) -> Vec3 {
+/// Texel `at`, linear RGB.
+#[inline]
+pub fn texel_rgb(scene: &SceneArgs, at: u32) -> Vec3 {
     let word = scene.texels[at as usize];
     let decode = |byte: u32| f32::from_bits(scene.tables[(byte & 255) as usize]);
     Vec3::new(decode(word), decode(word >> 8), decode(word >> 16))
