@@ -9,7 +9,8 @@ cd "$(dirname "$0")"
 
 say "building"
 cargo build --release --quiet
-device=(--device auto)
+# The kernels, which are what a phone runs; `auto` would take the engine for CPUs where OpenCL is no GPU.
+device=(--device opencl)
 if [ "$opencl" = no ]; then
     say "no OpenCL on this machine: drawing on the CPU"
     device=(--device cpu)

@@ -28,7 +28,7 @@
 //!
 //! # Which device, which method
 //!
-//! [`DeviceOptions`] choose the device ([`DeviceChoice`]: OpenCL where there is one, else packets of rays on the CPU), a budget of memory,
+//! [`DeviceOptions`] choose the device ([`DeviceChoice`]: an OpenCL GPU where there is one, else packets of rays on the CPU), a budget of memory,
 //! and a [`Profile`] whose limits OpenCL is held to. Whatever memory the budget leaves, the picture is the same: frames that
 //! do not fit are drawn in bands.
 //!

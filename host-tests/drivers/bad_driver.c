@@ -14,8 +14,12 @@
 
 typedef int32_t cl_int;
 typedef uint32_t cl_uint;
+typedef uint64_t cl_device_type;
 
 enum {
+  CL_SUCCESS = 0,
+  CL_DEVICE_TYPE_GPU = 4,
+  CL_DEVICE_TYPE = 0x1000,
   CL_PLATFORM_VERSION = 0x0901,
   CL_DEVICE_NAME = 0x102B,
   CL_DEVICE_VENDOR = 0x102C,
@@ -91,6 +95,13 @@ cl_int clGetDeviceInfo(void *device, cl_uint name, size_t size, void *value, siz
   }
   if (fault("only-qualcomm")) {
     if (name == CL_DEVICE_NAME || name == CL_DEVICE_VENDOR) return answer("QUALCOMM ", size, value, size_ret);
+  }
+  // A phone's device is a GPU.
+  if (name == CL_DEVICE_TYPE) {
+    if (size_ret) *size_ret = sizeof(cl_device_type);
+    if (value && size < sizeof(cl_device_type)) return CL_INVALID_VALUE;
+    if (value) *(cl_device_type *)value = CL_DEVICE_TYPE_GPU;
+    return CL_SUCCESS;
   }
   const char *driver = getenv("BAD_DRIVER_VERSION");
   if (name == CL_DRIVER_VERSION && driver) return answer(driver, size, value, size_ret);

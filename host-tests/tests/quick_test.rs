@@ -147,6 +147,28 @@ fn auto_falls_back_with_a_notice() {
     assert!(matches!(refused, Some(Error::KernelBuild { .. })), "{refused:?}");
     // A build that fails is no verdict, and an intact device is none the worse.
     assert_eq!(verdicts(folder.path()).len(), 2);
-    let sound = renderer(&options(DeviceChoice::Auto, folder.path(), None)).unwrap();
+    let sound = renderer(&options(OPENCL, folder.path(), None)).unwrap();
     assert_eq!((sound.info().backend, sound.notices().len()), ("opencl", 0));
+}
+
+/// PoCL is a CPU, where packets of rays are faster than kernels with one ray to a work-item. What the engine cannot do is asked
+/// of OpenCL all the same.
+#[test]
+fn auto_prefers_the_engine_to_opencl_on_a_cpu() {
+    if no_opencl() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let auto = options(DeviceChoice::Auto, folder.path(), None);
+    let drawn_by = |options: &DeviceOptions| {
+        let renderer = renderer(options).unwrap();
+        assert!(renderer.notices().is_empty(), "{:?}", renderer.notices());
+        renderer.info().backend
+    };
+    assert_eq!(drawn_by(&auto), "cpu");
+    // Nothing was built for a device that does not draw.
+    assert!(std::fs::read_dir(folder.path()).unwrap().next().is_none());
+    assert_eq!(drawn_by(&DeviceOptions { bounds_checks: true, ..auto.clone() }), "opencl");
+    let phone = Some(Profile::named("adreno-420").unwrap());
+    assert_eq!(drawn_by(&DeviceOptions { profile: phone, ..auto }), "opencl");
 }

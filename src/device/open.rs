@@ -14,7 +14,8 @@ pub use super::opencl::{DeviceReport, DeviceSummary, RefusedLibrary};
 /// Which device draws.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum DeviceChoice {
-    /// The first usable OpenCL device, else the wide engine on the CPU.
+    /// The first usable OpenCL device that is not a CPU; else the wide engine on the CPU; where that has no lanes, whatever
+    /// OpenCL device there is. Under a profile, which only OpenCL obeys, the first OpenCL device of any type.
     #[default]
     Auto,
     /// The wide engine: packets of rays on the CPU's cores.

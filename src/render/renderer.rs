@@ -461,6 +461,16 @@ fn open_executor(
         DeviceChoice::Auto => (0, true),
         DeviceChoice::OpenCl(index) => (index.unwrap_or(0), false),
     };
+    // Software that compiles kernels for the CPU is slower than the engine. What only OpenCL can do is another matter.
+    let is_for_opencl = options.profile.is_some() || options.mutation.is_some() || options.bounds_checks;
+    let prefers_engine = |index: usize| {
+        CpuExecutor::has_lanes()
+            && !is_for_opencl
+            && devices(options).devices.get(index).is_some_and(|device| device.kind == "cpu")
+    };
+    if is_auto && prefers_engine(first) {
+        return Ok(Opened::on_cpu(CpuExecutor::default()));
+    }
     let mut index = first;
     loop {
         for careful in [false, true] {

@@ -37,6 +37,11 @@ impl CpuExecutor {
         Some(CpuExecutor { twin: TwinExecutor::default(), width: Some(width) })
     }
 
+    /// Whether this processor has vector instructions that the engine knows.
+    pub fn has_lanes() -> bool {
+        Width::available().next().is_some()
+    }
+
     /// The same engine, which prefers few launches or does not.
     pub fn preferring_few_launches(self, few_launches: bool) -> Self {
         CpuExecutor { twin: self.twin.preferring_few_launches(few_launches), ..self }

@@ -61,9 +61,9 @@ public final class OpenOptions {
     }
 
     /**
-     * Which device draws: {@code auto} (the first usable OpenCL device, else the CPU; the default),
-     * {@code cpu}, {@code opencl} (the first usable OpenCL device or an exception), or {@code
-     * opencl:N}.
+     * Which device draws: {@code auto} (the first usable OpenCL GPU, else packets of rays on the
+     * CPU; the default), {@code cpu} (these packets), {@code twin} (one ray at a time), {@code
+     * opencl} (the first usable OpenCL device or an exception), or {@code opencl:N}.
      */
     public Builder device(String device) {
       return set("device", device);
