@@ -14,6 +14,20 @@ pub fn sample_textures<L: Lanes>(
     l: L,
     scene: &SceneArgs,
     ids: &Array<u32>,
+    at: (Floats<L>, Floats<L>),
+    lanes: Mask<L>,
+) -> Vectors<L> {
+    l.enter(
+        #[inline(always)]
+        || sample_textures_inlined(l, scene, ids, at, lanes),
+    )
+}
+
+#[inline(always)]
+fn sample_textures_inlined<L: Lanes>(
+    l: L,
+    scene: &SceneArgs,
+    ids: &Array<u32>,
     (s, t): (Floats<L>, Floats<L>),
     lanes: Mask<L>,
 ) -> Vectors<L> {

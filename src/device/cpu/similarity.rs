@@ -62,7 +62,10 @@ impl<L: Lanes> Check<'_, L> {
     /// What pixels hit.
     #[inline(always)]
     fn references(&self, at: &Array<u32>) -> WideAttributes<L> {
-        load_attributes(self.l, &self.buffers.attributes, self.scene.frame.plane_pitch, at)
+        self.l.enter(
+            #[inline(always)]
+            || load_attributes(self.l, &self.buffers.attributes, self.scene.frame.plane_pitch, at),
+        )
     }
 
     /// Lanes that another object at `at` than `object` does not decide: of most other pairs nothing else must be read.
@@ -155,8 +158,18 @@ impl<L: Lanes> Check<'_, L> {
     }
 
     /// The fail mask of each pair of references: bit `FAIL_*` set where that test fails and is switched on.
+    ///
+    /// A function of its own, as [`Self::references`]: a dozen copies of it would take minutes to compile.
     #[inline(always)]
     fn similarity_checks(&self, a: &WideAttributes<L>, b: &WideAttributes<L>, lanes: Mask<L>) -> Words<L> {
+        self.l.enter(
+            #[inline(always)]
+            || self.similarity_checks_inlined(a, b, lanes),
+        )
+    }
+
+    #[inline(always)]
+    fn similarity_checks_inlined(&self, a: &WideAttributes<L>, b: &WideAttributes<L>, lanes: Mask<L>) -> Words<L> {
         let (l, step) = (self.l, self.step);
         let other_object = !a.object.equals(b.object);
         let nothing = a.object.equals(self.word(NO_OBJECT)).without(other_object);
