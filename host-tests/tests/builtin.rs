@@ -25,6 +25,7 @@ fn triangle_counts_are_those_of_the_views() {
         ("cafe", 28_000..=30_000),
         ("runner", 76_000..=80_000),
         ("kitchen", 95_000..=110_000),
+        ("conference", 265_000..=285_000),
         ("bathroom", 250_000..=290_000),
     ];
     let tiny = [("wall", 2), ("spheres", 2882), ("rods", 338), ("mirror-room", 60)];
@@ -184,10 +185,11 @@ fn every_platform_makes_the_same_bytes() {
     assert_eq!(found, FINGERPRINTS);
 }
 
-const FINGERPRINTS: [&str; 8] = [
+const FINGERPRINTS: [&str; 9] = [
     "cafe c6cf9905b8189a25",
     "runner 009adf8c6a864d71",
     "kitchen cf832d98f397872a",
+    "conference 800ee61a964ca13a",
     "bathroom f401c9e1fb9c7d16",
     "wall d0a6efcf7680eabe",
     "spheres 41b661c0471587dc",
@@ -219,6 +221,9 @@ fn scenes_show_mirrors_and_glass_as_they_promise() {
     // Metal all over, with jars, glasses and a window; a mirror that fills a wall.
     let [mirrors, glass] = shares("kitchen");
     assert!((0.04..0.25).contains(&mirrors) && (0.005..0.1).contains(&glass), "{mirrors} {glass}");
+    // Chairs on chromed tubes, carafes and glasses, windows behind blinds.
+    let [mirrors, glass] = shares("conference");
+    assert!((0.01..0.1).contains(&mirrors) && (0.005..0.1).contains(&glass), "{mirrors} {glass}");
     let [mirrors, glass] = shares("bathroom");
     assert!((0.04..0.2).contains(&mirrors) && (0.04..0.2).contains(&glass), "{mirrors} {glass}");
     assert_eq!(shares("wall"), [0.0, 0.0]);
@@ -226,7 +231,7 @@ fn scenes_show_mirrors_and_glass_as_they_promise() {
 
 #[test]
 fn the_doctor_warns_of_nothing_in_the_rooms() {
-    for name in ["runner", "kitchen", "bathroom"] {
+    for name in ["runner", "kitchen", "conference", "bathroom"] {
         let findings = examine(&builtin::to_scene(name).unwrap());
         let bad: Vec<_> = findings.iter().filter(|f| f.severity == Severity::Warning || f.topic == "winding").collect();
         assert!(bad.is_empty(), "{name}: {bad:?}");
@@ -237,6 +242,7 @@ fn the_doctor_warns_of_nothing_in_the_rooms() {
 fn lights_stand_below_the_lamps() {
     a_light_below_each_lamp("cafe");
     a_light_below_each_lamp("kitchen");
+    a_light_below_each_lamp("conference");
 }
 
 fn a_light_below_each_lamp(name: &str) {

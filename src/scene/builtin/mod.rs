@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Scenes of our own, made by deterministic code: a café, a finish line, a kitchen and a bathroom to look at, and four tiny scenes for tests.
+//! Scenes of our own, made by deterministic code: a café, a finish line, a kitchen, a conference room and a bathroom to look at, and four tiny scenes for tests.
 //!
 //! Each scene has a folder `scenes/NAME` with its `view.json` and the parameters of its generator; both are part of
 //! the library. The generators use `+ - * /` and square roots alone, so that every platform makes the same bytes.
@@ -7,6 +7,8 @@
 #[cfg(feature = "rooms")]
 pub mod bathroom;
 pub mod cafe;
+#[cfg(feature = "rooms")]
+pub mod conference;
 mod convert;
 mod export;
 #[cfg(feature = "rooms")]
@@ -39,11 +41,12 @@ pub const NAMES: [&str; 5] = ["cafe", "wall", "spheres", "rods", "mirror-room"];
 
 /// The names of all built-in scenes.
 #[cfg(feature = "rooms")]
-pub const NAMES: [&str; 8] = ["cafe", "runner", "kitchen", "bathroom", "wall", "spheres", "rods", "mirror-room"];
+pub const NAMES: [&str; 9] =
+    ["cafe", "runner", "kitchen", "conference", "bathroom", "wall", "spheres", "rods", "mirror-room"];
 
 /// Those of them that take large generators, which the Android library leaves out.
 #[cfg(feature = "rooms")]
-pub const ROOMS: [&str; 3] = ["runner", "kitchen", "bathroom"];
+pub const ROOMS: [&str; 4] = ["runner", "kitchen", "conference", "bathroom"];
 
 /// Makes a built-in scene.
 ///
@@ -64,6 +67,11 @@ pub fn generate(name: &str) -> Result<Model> {
         "kitchen" => kitchen::generate(
             &parameters(name, include_str!("../../../scenes/kitchen/parameters.json"))?,
             include_str!("../../../scenes/kitchen/view.json"),
+        )?,
+        #[cfg(feature = "rooms")]
+        "conference" => conference::generate(
+            &parameters(name, include_str!("../../../scenes/conference/parameters.json"))?,
+            include_str!("../../../scenes/conference/view.json"),
         )?,
         #[cfg(feature = "rooms")]
         "bathroom" => bathroom::generate(
@@ -138,6 +146,7 @@ mod tests {
             "cafe" => include_str!("../../../scenes/cafe/parameters.json"),
             "runner" => include_str!("../../../scenes/runner/parameters.json"),
             "kitchen" => include_str!("../../../scenes/kitchen/parameters.json"),
+            "conference" => include_str!("../../../scenes/conference/parameters.json"),
             _ => include_str!("../../../scenes/bathroom/parameters.json"),
         };
         assert!(text.contains(from), "{from}");
@@ -146,6 +155,7 @@ mod tests {
             "cafe" => cafe::generate(&parameters(scene, &text)?, "{}"),
             "runner" => runner::generate(&parameters(scene, &text)?, "{}"),
             "kitchen" => kitchen::generate(&parameters(scene, &text)?, "{}"),
+            "conference" => conference::generate(&parameters(scene, &text)?, "{}"),
             _ => bathroom::generate(&parameters(scene, &text)?, "{}"),
         };
         model?.finish()
@@ -153,7 +163,7 @@ mod tests {
 
     #[test]
     fn parameters_out_of_range_are_refused_with_key_and_range() {
-        for scene in ["cafe", "runner", "kitchen", "bathroom"] {
+        for scene in ["cafe", "runner", "kitchen", "conference", "bathroom"] {
             assert!(changed(scene, "\"seed\": 2016", "\"seed\": 1").is_ok());
         }
         let cafe = [
@@ -182,6 +192,16 @@ mod tests {
             ("\"at\": [-0.25, 1.75, 0.75]", "\"at\": [-0.25, 2.65, 0.75]", "`lamps.at` is 2.65"),
             ("\"spices\"", "\"spice\"", "unknown field `spice`"),
         ];
+        let conference = [
+            ("\"wide\": 1.9", "\"wide\": 2.9", "`windows.wide` is 2.9; it must lie between"),
+            ("\"head\": 2.45", "\"head\": 2.8", "`windows.head` is 2.8"),
+            ("\"tilt\": 0.055", "\"tilt\": 0.3", "`blinds.tilt` is 0.3"),
+            ("\"slats\": 52", "\"slats\": 1000", "`blinds.slats`"),
+            ("\"size\": [1.55, 5.6]", "\"size\": [1.55, 56]", "`table.size` is 56"),
+            ("\"seats\": 7", "\"seats\": 0", "`seats` is 0"),
+            ("\"at\": [0.0, 1.88, -1.3]", "\"at\": [0.0, 2.88, -1.3]", "`lamps.at` is 2.88"),
+            ("\"battens\"", "\"battons\"", "unknown field `battons`"),
+        ];
         let bathroom = [
             ("\"tiles\": 0.98", "\"tiles\": 2", "`room.tiles` is 2"),
             ("\"far\": -0.6", "\"far\": -1.5", "`window.far` is -1.5"),
@@ -197,6 +217,7 @@ mod tests {
             ("cafe", cafe.as_slice()),
             ("runner", runner.as_slice()),
             ("kitchen", kitchen.as_slice()),
+            ("conference", conference.as_slice()),
             ("bathroom", bathroom.as_slice()),
         ] {
             for (from, to, expected) in cases {
@@ -212,6 +233,7 @@ mod tests {
             ("cafe", "\"glass_sides\": 21", "\"glass_sides\": 42"),
             ("runner", "\"cell\": 0.0222", "\"cell\": 0.02"),
             ("kitchen", "\"small_sides\": 14", "\"small_sides\": 28"),
+            ("conference", "\"small_sides\": 16", "\"small_sides\": 20"),
             ("bathroom", "\"towel_cells\": 34", "\"towel_cells\": 60"),
         ] {
             let base = changed(scene, "\"seed\": 2016", "\"seed\": 2016").unwrap();

@@ -117,3 +117,76 @@ pub fn table(half_x: f32, half_z: f32, height: f32) -> (Mesh, Mesh) {
     let top = swept(&edge, Outline::new(half_x, half_z, 0.03), 40, [true, true]).with_plan_texture(1.0);
     (frame, top)
 }
+
+/// A chair of bent tubes with thin legs, a padded seat and back, and arms: tubes, pads, plastic. It looks to +z.
+pub fn tube_chair(seat: f32, back: f32, sides: u32) -> [Mesh; 3] {
+    let (mut tubes, mut plastic) = (Mesh::default(), Mesh::default());
+    let low = seat - 0.045;
+    for side in [-1.0, 1.0] {
+        // One tube is front leg, rail and back; another the hind leg; a third the arm.
+        let long = [
+            at(side * 0.262, 0.006, 0.235),
+            at(side * 0.255, 0.20, 0.226),
+            at(side * 0.250, low - 0.09, 0.216),
+            at(side * 0.248, low - 0.020, 0.204),
+            at(side * 0.247, low, 0.165),
+            at(side * 0.246, low, 0.08),
+            at(side * 0.245, low, -0.09),
+            at(side * 0.244, low + 0.008, -0.185),
+            at(side * 0.242, low + 0.055, -0.230),
+            at(side * 0.240, seat + 0.09, -0.250),
+            at(side * 0.236, seat + 0.24, -0.274),
+            at(side * 0.228, back - 0.02, -0.317),
+        ];
+        tubes.append(&Mesh::tube(&smooth_path(&long, 4, false), 0.0105, sides, false));
+        let hind = [at(side * 0.246, low, -0.10), at(side * 0.250, 0.22, -0.235), at(side * 0.262, 0.006, -0.325)];
+        tubes.append(&Mesh::tube(&smooth_path(&hind, 5, false), 0.0105, sides, false));
+        let arm = [
+            at(side * 0.250, low + 0.01, 0.13),
+            at(side * 0.276, seat + 0.06, 0.165),
+            at(side * 0.280, seat + 0.175, 0.14),
+            at(side * 0.280, seat + 0.185, -0.04),
+            at(side * 0.268, seat + 0.180, -0.20),
+            at(side * 0.240, seat + 0.170, -0.258),
+        ];
+        tubes.append(&Mesh::tube(&smooth_path(&arm, 5, false), 0.009, sides, false));
+        let y = seat + 0.186;
+        let rest = Mesh::rounded_block(at(-0.024, y, -0.16), at(0.024, y + 0.022, 0.13), 0.008);
+        plastic.append(&rest.moved(at(side * 0.280, 0.0, 0.0)));
+        for z in [0.235, -0.325] {
+            let foot = [(0.0, -0.002), (0.015, -0.002), (0.016, 0.006), (0.014, 0.024), (0.0, 0.026)];
+            plastic.append(&Mesh::lathe(&foot, sides).moved(at(side * 0.262, 0.0, z)));
+        }
+    }
+    for z in [0.12, -0.14] {
+        tubes.append(&Mesh::tube(&[at(-0.245, low, z), at(0.245, low, z)], 0.009, sides, false));
+    }
+    let edge =
+        [(-0.03, low + 0.011), (-0.004, low + 0.018), (0.0, seat - 0.012), (-0.008, seat), (-0.04, seat + 0.012)];
+    let mut pads = swept(&edge, Outline::new(0.225, 0.215, 0.07), 40, [true, true]);
+    // The back is bowed and narrows upwards.
+    let (y0, y1) = (seat + 0.10, back);
+    pads.append(&super::cloth::thick_sheet(14, 10, 0.030, move |u, v| {
+        let x = 2.0 * u - 1.0;
+        let round = 1.0 - 0.10 * v * v - 0.06 * (1.0 - v) * (1.0 - v);
+        let y = y0 + (y1 - y0) * v;
+        at(0.222 * x * round, y, -0.236 - 0.055 * v - 0.030 * (1.0 - x * x))
+    }));
+    [tubes, pads, plastic]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::builtin::solid::{normals_agree, open_edges};
+
+    #[test]
+    fn a_tube_chair_s_parts_are_closed_and_bend_without_folds() {
+        let [tubes, pads, plastic] = tube_chair(0.455, 0.90, 8);
+        for mesh in [&tubes, &pads, &plastic] {
+            assert_eq!(open_edges(mesh), 0);
+            normals_agree(mesh);
+        }
+        assert!(tubes.positions.iter().all(|p| p.y > 0.0 && p.y < 0.92));
+    }
+}

@@ -3,6 +3,7 @@
 //!
 //! Shapes are meshes about the origin; a scene gives them place, name and material. Lengths are metres.
 
+pub mod blinds;
 pub mod cloth;
 pub mod crockery;
 pub mod cupboards;
