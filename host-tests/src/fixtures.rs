@@ -23,7 +23,13 @@ use rarefy::internal::method::options::{
 use rarefy::internal::prepare::kdtree::KdNode;
 use rarefy::internal::prepare::{PreparedScene, Shading};
 use rarefy::internal::render::renderer::Renderer;
+use rarefy::internal::scene::builtin::{HUGE, NAMES};
 use rarefy::internal::scene::{Light, Material, Object, Scene, SceneParts, Surface, Texture};
+
+/// The built-in scenes that are made in a moment: all but those of millions of triangles.
+pub fn quick_scenes() -> impl Iterator<Item = &'static str> {
+    NAMES.into_iter().filter(|name| !HUGE.contains(name))
+}
 
 /// Shorthand for a vector.
 pub fn v(x: f32, y: f32, z: f32) -> Vec3 {

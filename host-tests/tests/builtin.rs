@@ -4,6 +4,8 @@
 
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use glam::Vec3;
 use rarefy::internal::layout::PLANE_OBJECT;
@@ -11,11 +13,11 @@ use rarefy::internal::scene::builtin::mesh::Mesh;
 use rarefy::internal::scene::builtin::{self, Model};
 use rarefy::internal::scene::doctor::{Severity, examine};
 use rarefy::internal::scene::{LoadNotes, Scene, Surface};
-use rarefy::{Error, Keep, Mode};
-use rarefy_host_tests::fixtures::{options, twin_renderer};
+use rarefy::{Cancel, Error, Event, Keep, Mode, Monitor};
+use rarefy_host_tests::fixtures::{options, quick_scenes, twin_renderer};
 
 fn all() -> Vec<Model> {
-    builtin::NAMES.iter().map(|name| builtin::generate(name).unwrap()).collect()
+    quick_scenes().map(|name| builtin::generate(name).unwrap()).collect()
 }
 
 #[test]
@@ -76,12 +78,16 @@ fn fault(mesh: &Mesh) -> Option<String> {
     None
 }
 
+fn sound(model: &Model) {
+    for group in &model.groups {
+        assert_eq!(fault(&group.mesh), None, "{}: {}", model.name, group.name);
+    }
+}
+
 #[test]
 fn meshes_are_sound() {
     for model in all() {
-        for group in &model.groups {
-            assert_eq!(fault(&group.mesh), None, "{}: {}", model.name, group.name);
-        }
+        sound(&model);
     }
     // The same check finds what is wrong.
     let mut mesh = Mesh::sphere(1.0, 8, 4);
@@ -131,22 +137,22 @@ fn open_edges(mesh: &Mesh) -> usize {
     edges.values().filter(|&&count| count != [1, 1]).count()
 }
 
+/// How many glass objects a model has, all closed.
+fn closed_glass(model: &Model) -> usize {
+    let is_glass = |name: &str| model.materials[model.material_index(name).unwrap()].surface == Surface::Glass;
+    let glass: Vec<_> = model.groups.iter().filter(|group| is_glass(&group.material)).collect();
+    for group in &glass {
+        assert_eq!(open_edges(&group.mesh), 0, "{}: {}", model.name, group.name);
+        let p = |i: u32| group.mesh.positions[i as usize].as_dvec3();
+        let volume: f64 = group.mesh.triangles.iter().map(|t| p(t[0]).dot(p(t[1]).cross(p(t[2])))).sum();
+        assert!(volume > 0.0, "{}: {} is inside out", model.name, group.name);
+    }
+    glass.len()
+}
+
 #[test]
 fn glass_objects_are_closed_and_face_outwards() {
-    let mut found = 0;
-    for model in all() {
-        for group in &model.groups {
-            let material = &model.materials[model.material_index(&group.material).unwrap()];
-            if material.surface != Surface::Glass {
-                continue;
-            }
-            found += 1;
-            assert_eq!(open_edges(&group.mesh), 0, "{}: {}", model.name, group.name);
-            let p = |i: u32| group.mesh.positions[i as usize].as_dvec3();
-            let volume: f64 = group.mesh.triangles.iter().map(|t| p(t[0]).dot(p(t[1]).cross(p(t[2])))).sum();
-            assert!(volume > 0.0, "{}: {} is inside out", model.name, group.name);
-        }
-    }
+    let found: usize = all().iter().map(closed_glass).sum();
     assert!(found >= 4, "only {found} glass objects");
     let mut mesh = Mesh::sphere(1.0, 8, 4);
     mesh.triangles.swap_remove(7);
@@ -232,10 +238,66 @@ fn scenes_show_mirrors_and_glass_as_they_promise() {
 #[test]
 fn the_doctor_warns_of_nothing_in_the_rooms() {
     for name in ["runner", "kitchen", "conference", "bathroom"] {
-        let findings = examine(&builtin::to_scene(name).unwrap());
-        let bad: Vec<_> = findings.iter().filter(|f| f.severity == Severity::Warning || f.topic == "winding").collect();
-        assert!(bad.is_empty(), "{name}: {bad:?}");
+        nothing_bad(name, &builtin::to_scene(name).unwrap());
     }
+}
+
+fn nothing_bad(name: &str, scene: &Scene) {
+    let findings = examine(scene);
+    let bad: Vec<_> = findings.iter().filter(|f| f.severity == Severity::Warning || f.topic == "winding").collect();
+    assert!(bad.is_empty(), "{name}: {bad:?}");
+}
+
+#[test]
+#[ignore = "long: makes and examines millions of triangles"]
+fn huge_scenes_are_what_they_say_too() {
+    for name in builtin::HUGE {
+        let model = builtin::generate(name).unwrap();
+        let view: serde_json::Value = serde_json::from_str(model.view).unwrap();
+        assert!(model.triangle_count() >= 2_000_000);
+        assert_eq!(view["triangles"], model.triangle_count());
+        sound(&model);
+        closed_glass(&model);
+        assert_eq!(format!("{name} {:016x}", fingerprint(&model)), "courtyard 1becc45f87bec3a1");
+        nothing_bad(name, &builtin::to_scene(name).unwrap());
+    }
+}
+
+/// A monitor that cancels at the first report of progress beyond `share`, and counts the reports.
+fn cancelling(share: f32) -> (Monitor, Arc<AtomicUsize>) {
+    let (cancel, count) = (Cancel::default(), Arc::new(AtomicUsize::new(0)));
+    let (token, reports) = (cancel.clone(), Arc::clone(&count));
+    let monitor = Monitor::new(move |event| {
+        if let Event::Progress { share: done, .. } = event {
+            reports.fetch_add(1, Ordering::Relaxed);
+            if done > share {
+                token.cancel();
+            }
+        }
+    });
+    (monitor.with_cancel(&cancel), count)
+}
+
+#[test]
+fn making_a_scene_can_be_watched_and_cancelled() {
+    // Early, while pictures are painted.
+    let (monitor, reports) = cancelling(0.02);
+    assert!(matches!(builtin::generate_watched("courtyard", &monitor), Err(Error::Cancelled)));
+    assert!(reports.load(Ordering::Relaxed) > 1);
+    // Late: the model is there, and is being written.
+    let folder = tempfile::tempdir().unwrap();
+    let (monitor, reports) = cancelling(0.6);
+    let written = builtin::write_watched("cafe", &folder.path().join("cafe"), &monitor);
+    assert!(matches!(written, Err(Error::Cancelled)) && reports.load(Ordering::Relaxed) > 10);
+    assert_eq!(entries(folder.path()), Vec::<String>::new());
+    let (monitor, _) = cancelling(0.85);
+    assert!(matches!(builtin::to_scene_watched("cafe", &monitor), Err(Error::Cancelled)));
+    let (monitor, reports) = cancelling(2.0);
+    assert_eq!(
+        difference(&builtin::to_scene_watched("rods", &monitor).unwrap(), &builtin::to_scene("rods").unwrap()),
+        None
+    );
+    assert!(reports.load(Ordering::Relaxed) > 1);
 }
 
 #[test]
@@ -293,7 +355,7 @@ fn without_reasons(notes: &LoadNotes) -> LoadNotes {
 #[test]
 fn files_and_memory_give_the_same_scene() {
     let folder = tempfile::tempdir().unwrap();
-    for name in builtin::NAMES {
+    for name in quick_scenes() {
         let path = folder.path().join("made").join(name);
         builtin::write(name, &path).unwrap();
         let loaded = rarefy::internal::scene::load(&path, &rarefy::Monitor::default()).unwrap();

@@ -36,7 +36,7 @@ fn every_launch_of_every_kind_of_frame_equals_the_twin() {
 
 #[test]
 fn frames_of_every_size_and_scene_equal_the_twin() {
-    for name in builtin::NAMES {
+    for name in rarefy_host_tests::fixtures::quick_scenes() {
         let prepared = Prepared::named(name);
         for mut engine in engines() {
             let mut frames = Vec::new();

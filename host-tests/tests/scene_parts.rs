@@ -141,7 +141,7 @@ fn the_most_that_is_allowed_is_accepted() {
 
 #[test]
 fn parts_come_back_as_they_were() {
-    for name in builtin::NAMES {
+    for name in rarefy_host_tests::fixtures::quick_scenes() {
         let scene = builtin::to_scene(name).unwrap();
         assert_eq!(Scene::new(scene.clone().into_parts()).unwrap(), scene);
     }

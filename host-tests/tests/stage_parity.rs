@@ -43,7 +43,7 @@ fn frames_of_every_size_and_scene_equal_the_twin() {
     if no_opencl() {
         return;
     }
-    for name in builtin::NAMES {
+    for name in rarefy_host_tests::fixtures::quick_scenes() {
         let prepared = Prepared::named(name);
         let mut device = device(true, &OpenOptions::default());
         let sizes = [(1, 1), (1, 7), (7, 1), (2, 2), (3, 5), (33, 17)];
@@ -200,7 +200,7 @@ fn fast_builds_draw_the_built_in_scenes_within_one_step() {
     if no_opencl() {
         return;
     }
-    for name in builtin::NAMES {
+    for name in rarefy_host_tests::fixtures::quick_scenes() {
         fast_build_is_close(builtin::to_scene(name).unwrap(), 256);
     }
     fast_build_is_close(zoo(), 256);

@@ -69,7 +69,9 @@ fn dispatch(command: &Command, interrupt: &Interrupt) -> Result<bool> {
         Command::Doctor(args) => doctor::run(args, interrupt).map(|()| true),
         Command::Bake(args) => bake::run(args, interrupt).map(|()| true),
         Command::MakeScene(args) => {
-            interrupt.watch(|_| rarefy::internal::scene::builtin::write(&args.name, &args.output))?;
+            progress::with_bar(interrupt, |monitor| {
+                rarefy::internal::scene::builtin::write_watched(&args.name, &args.output, monitor)
+            })?;
             output::say(None, &args.output.display().to_string());
             Ok(true)
         }

@@ -62,7 +62,7 @@ impl Progress {
 }
 
 /// Does `work` with a bar that is taken away at its end; Ctrl-C cancels it.
-fn with_bar<T>(interrupt: &Interrupt, work: impl FnOnce(&Monitor) -> Result<T>) -> Result<T> {
+pub fn with_bar<T>(interrupt: &Interrupt, work: impl FnOnce(&Monitor) -> Result<T>) -> Result<T> {
     let progress = Arc::new(Progress::new());
     let shown = Arc::clone(&progress);
     let monitor = Monitor::new(move |event| {
@@ -99,7 +99,7 @@ pub fn load_scene(name: &Path, outputs: &Outputs, interrupt: &Interrupt) -> Resu
 
 fn load(path: &Path, outputs: &Outputs, monitor: &Monitor) -> Result<Scene> {
     match path.to_str() {
-        Some(name) if builtin::NAMES.contains(&name) && !path.exists() => builtin::to_scene(name),
+        Some(name) if builtin::NAMES.contains(&name) && !path.exists() => builtin::to_scene_watched(name, monitor),
         _ => {
             let (scene, files) = scene::load_listing(path, &LoadOptions::default(), monitor)?;
             outputs.were_read(&files)?;

@@ -7,11 +7,13 @@ use glam::Vec3;
 
 use super::model::Model;
 use crate::math::pack_normal;
+use crate::monitor::Monitor;
 use crate::scene::{LoadNotes, Material, Object, SceneParts, Texture, complete_view};
 use crate::{Error, Result, Scene};
 
-/// Makes the scene that [`crate::scene::load`] would make from the model's files.
-pub fn scene_of(model: &Model) -> Result<Scene> {
+/// Makes the scene that [`crate::scene::load`] would make from the model's files. Each mesh is given back as soon as it
+/// was taken over: a scene of millions of triangles is in memory once.
+pub fn scene_of(mut model: Model, monitor: &Monitor) -> Result<Scene> {
     let (view, warnings) = complete_view(&format!("scenes/{}/view.json", model.name), model.view)?;
     let mut parts = SceneParts { name: model.name.clone(), view, warnings, ..SceneParts::default() };
     parts.notes = LoadNotes { extent_given: true, ..LoadNotes::default() };
@@ -23,7 +25,7 @@ pub fn scene_of(model: &Model) -> Result<Scene> {
                 Some(&index) => Ok(Some(index)),
                 None => {
                     let index = parts.textures.len() as u32;
-                    parts.textures.push(texture_of(model, name, is_mask)?);
+                    parts.textures.push(texture_of(&model, name, is_mask)?);
                     known.insert((name.clone(), is_mask), index);
                     Ok::<_, Error>(Some(index))
                 }
@@ -49,7 +51,17 @@ pub fn scene_of(model: &Model) -> Result<Scene> {
         });
     }
     parts.materials.push(Material::default());
-    for group in &model.groups {
+    let groups = std::mem::take(&mut model.groups);
+    let count = groups.len() as f32;
+    let triangles = groups.iter().map(|g| g.mesh.triangles.len()).sum();
+    parts.positions.reserve(groups.iter().map(|g| g.mesh.positions.len()).sum());
+    parts.triangles.reserve(triangles);
+    parts.corner_normals.reserve(triangles);
+    parts.corner_texcoords.reserve(triangles);
+    parts.triangle_objects.reserve(triangles);
+    for (k, group) in groups.into_iter().enumerate() {
+        monitor.check()?;
+        monitor.tell(k as f32 / count);
         let unknown = || Error::scene(model.name.clone(), format!("unknown material `{}`", group.material));
         let material = model.material_index(&group.material).ok_or_else(unknown)? as u32;
         let object = parts.objects.len() as u32;
@@ -90,14 +102,24 @@ mod tests {
     #[test]
     fn a_view_without_camera_or_a_model_with_unknown_names_is_refused() {
         let mut model = generate("spheres").unwrap();
-        assert!(scene_of(&model).is_ok());
+        assert!(scene_of(model.clone(), &Monitor::default()).is_ok());
         model.groups[0].material = "none".into();
-        assert!(scene_of(&model).unwrap_err().to_string().contains("unknown material `none`"));
+        assert!(
+            scene_of(model.clone(), &Monitor::default()).unwrap_err().to_string().contains("unknown material `none`")
+        );
         let mut model = generate("spheres").unwrap();
         model.textures.clear();
-        assert!(scene_of(&model).unwrap_err().to_string().contains("unknown picture `checks.png`"));
+        assert!(
+            scene_of(model.clone(), &Monitor::default())
+                .unwrap_err()
+                .to_string()
+                .contains("unknown picture `checks.png`")
+        );
         let mut model = generate("wall").unwrap();
         model.view = "{\"lights\": [], \"extent\": 1}";
-        assert_eq!(scene_of(&model).unwrap_err().to_string(), "scenes/wall/view.json: `camera` is missing");
+        assert_eq!(
+            scene_of(model.clone(), &Monitor::default()).unwrap_err().to_string(),
+            "scenes/wall/view.json: `camera` is missing"
+        );
     }
 }

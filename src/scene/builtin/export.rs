@@ -3,44 +3,52 @@
 
 use std::fmt::Write as _;
 use std::fs;
+use std::io::{BufWriter, Write as _};
 use std::path::Path;
 
 use image::codecs::png::PngEncoder;
 use image::{ExtendedColorType, ImageEncoder};
 
-use super::model::Model;
+use super::model::{Group, Model};
+use crate::monitor::Monitor;
 use crate::scene::Surface;
 use crate::{Error, Result, files};
 
 /// The text of `scene.obj`. Numbers are written with as many digits as give the same `f32` when read.
 pub fn obj_text(model: &Model) -> String {
-    let mut out = format!(
-        "# built-in scene \"{}\" of Rarefy, {} triangles\nmtllib scene.mtl\n",
-        model.name,
-        model.triangle_count()
-    );
+    let mut text = obj_head(model);
     let mut first = 1;
     for group in &model.groups {
-        let mesh = &group.mesh;
-        // Writing to a String cannot fail.
-        let _ = writeln!(out, "\ng {}", group.name);
-        for p in &mesh.positions {
-            let _ = writeln!(out, "v {} {} {}", p.x, p.y, p.z);
-        }
-        for t in &mesh.texcoords {
-            let _ = writeln!(out, "vt {} {}", t.x, t.y);
-        }
-        for n in &mesh.normals {
-            let _ = writeln!(out, "vn {} {} {}", n.x, n.y, n.z);
-        }
-        let _ = writeln!(out, "usemtl {}", group.material);
-        for t in &mesh.triangles {
-            let [a, b, c] = t.map(|i| i as usize + first);
-            let _ = writeln!(out, "f {a}/{a}/{a} {b}/{b}/{b} {c}/{c}/{c}");
-        }
-        first += mesh.positions.len();
+        obj_group(&mut text, group, &mut first);
     }
-    out
+    text
+}
+
+fn obj_head(model: &Model) -> String {
+    let (name, count) = (&model.name, model.triangle_count());
+    format!("# built-in scene \"{name}\" of Rarefy, {count} triangles\nmtllib scene.mtl\n")
+}
+
+/// Adds the text of a group, whose first vertex has the number `first`.
+fn obj_group(out: &mut String, group: &Group, first: &mut usize) {
+    let mesh = &group.mesh;
+    // Writing to a String cannot fail.
+    let _ = writeln!(out, "\ng {}", group.name);
+    for p in &mesh.positions {
+        let _ = writeln!(out, "v {} {} {}", p.x, p.y, p.z);
+    }
+    for t in &mesh.texcoords {
+        let _ = writeln!(out, "vt {} {}", t.x, t.y);
+    }
+    for n in &mesh.normals {
+        let _ = writeln!(out, "vn {} {} {}", n.x, n.y, n.z);
+    }
+    let _ = writeln!(out, "usemtl {}", group.material);
+    for t in &mesh.triangles {
+        let [a, b, c] = t.map(|i| i as usize + *first);
+        let _ = writeln!(out, "f {a}/{a}/{a} {b}/{b}/{b} {c}/{c}/{c}");
+    }
+    *first += mesh.positions.len();
 }
 
 /// The text of `scene.mtl`.
@@ -77,8 +85,8 @@ pub fn mtl_text(model: &Model) -> String {
 /// Writes a model into `folder`, whole or not at all.
 ///
 /// # Errors
-/// If `folder` exists and is not an empty folder, or cannot be written.
-pub fn write_model(model: &Model, folder: &Path) -> Result<()> {
+/// If `folder` exists and is not an empty folder, or cannot be written, or [`Error::Cancelled`].
+pub fn write_model(model: &Model, folder: &Path, monitor: &Monitor) -> Result<()> {
     match fs::read_dir(folder) {
         Ok(mut entries) => {
             if entries.next().is_some() {
@@ -93,7 +101,7 @@ pub fn write_model(model: &Model, folder: &Path) -> Result<()> {
         // Messages name where a file would have come to lie.
         let put =
             |name: &str, bytes: &[u8]| fs::write(inner.join(name), bytes).map_err(|e| Error::io(folder.join(name), e));
-        put("scene.obj", obj_text(model).as_bytes())?;
+        write_obj(model, &inner.join("scene.obj"), &folder.join("scene.obj"), monitor)?;
         put("scene.mtl", mtl_text(model).as_bytes())?;
         put("view.json", model.view.as_bytes())?;
         if !model.textures.is_empty() {
@@ -109,6 +117,22 @@ pub fn write_model(model: &Model, folder: &Path) -> Result<()> {
         }
         Ok(())
     })
+}
+
+/// Writes `scene.obj` group by group: the whole text of a large scene takes hundreds of megabytes.
+fn write_obj(model: &Model, path: &Path, shown: &Path, monitor: &Monitor) -> Result<()> {
+    let fail = |e| Error::io(shown, e);
+    let mut file = BufWriter::new(fs::File::create(path).map_err(fail)?);
+    let mut text = obj_head(model);
+    let mut first = 1;
+    for (k, group) in model.groups.iter().enumerate() {
+        monitor.check()?;
+        monitor.tell(k as f32 / model.groups.len() as f32);
+        obj_group(&mut text, group, &mut first);
+        file.write_all(text.as_bytes()).map_err(fail)?;
+        text.clear();
+    }
+    file.flush().map_err(fail)
 }
 
 fn refuse(folder: &Path, message: &str) -> Error {

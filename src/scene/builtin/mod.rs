@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Scenes of our own, made by deterministic code: a café, a finish line, a kitchen, a conference room and a bathroom to look at, and four tiny scenes for tests.
+//! Scenes of our own, made by deterministic code: a café, a finish line, a kitchen, a conference room, a bathroom and a
+//! courtyard to look at, and four tiny scenes for tests.
 //!
 //! Each scene has a folder `scenes/NAME` with its `view.json` and the parameters of its generator; both are part of
 //! the library. The generators use `+ - * /` and square roots alone, so that every platform makes the same bytes.
@@ -10,6 +11,8 @@ pub mod cafe;
 #[cfg(feature = "rooms")]
 pub mod conference;
 mod convert;
+#[cfg(feature = "rooms")]
+pub mod courtyard;
 mod export;
 #[cfg(feature = "rooms")]
 pub mod kitchen;
@@ -33,6 +36,7 @@ pub use export::{mtl_text, obj_text};
 pub use model::{Finish, Group, Model, Picture};
 
 use crate::error::Setting;
+use crate::monitor::Monitor;
 use crate::{Error, Result, Scene};
 
 /// The names of all built-in scenes.
@@ -41,18 +45,32 @@ pub const NAMES: [&str; 5] = ["cafe", "wall", "spheres", "rods", "mirror-room"];
 
 /// The names of all built-in scenes.
 #[cfg(feature = "rooms")]
-pub const NAMES: [&str; 9] =
-    ["cafe", "runner", "kitchen", "conference", "bathroom", "wall", "spheres", "rods", "mirror-room"];
+pub const NAMES: [&str; 10] =
+    ["cafe", "runner", "kitchen", "conference", "bathroom", "courtyard", "wall", "spheres", "rods", "mirror-room"];
 
 /// Those of them that take large generators, which the Android library leaves out.
 #[cfg(feature = "rooms")]
-pub const ROOMS: [&str; 4] = ["runner", "kitchen", "conference", "bathroom"];
+pub const ROOMS: [&str; 5] = ["runner", "kitchen", "conference", "bathroom", "courtyard"];
+
+/// Those of them that have millions of triangles, and take seconds to make.
+#[cfg(feature = "rooms")]
+pub const HUGE: [&str; 1] = ["courtyard"];
 
 /// Makes a built-in scene.
 ///
 /// # Errors
 /// If there is no scene of that name; the message lists those that exist.
 pub fn generate(name: &str) -> Result<Model> {
+    generate_watched(name, &Monitor::default())
+}
+
+/// As [`generate`], with progress; it ends when it is cancelled.
+///
+/// # Errors
+/// If there is no scene of that name, or [`Error::Cancelled`].
+pub fn generate_watched(name: &str, monitor: &Monitor) -> Result<Model> {
+    let (making, finishing) = (monitor.part("scene", 0.0, 0.5), monitor.part("scene", 0.5, 1.0));
+    making.check()?;
     let model = match name {
         "cafe" => cafe::generate(
             &parameters(name, include_str!("../../../scenes/cafe/parameters.json"))?,
@@ -78,6 +96,12 @@ pub fn generate(name: &str) -> Result<Model> {
             &parameters(name, include_str!("../../../scenes/bathroom/parameters.json"))?,
             include_str!("../../../scenes/bathroom/view.json"),
         )?,
+        #[cfg(feature = "rooms")]
+        "courtyard" => courtyard::generate(
+            &parameters(name, include_str!("../../../scenes/courtyard/parameters.json"))?,
+            include_str!("../../../scenes/courtyard/view.json"),
+            &making,
+        )?,
         "wall" => tiny::wall(
             &parameters(name, include_str!("../../../scenes/wall/parameters.json"))?,
             include_str!("../../../scenes/wall/view.json"),
@@ -98,7 +122,7 @@ pub fn generate(name: &str) -> Result<Model> {
             return Err(Error::option(Setting::BuiltinScene, name, crate::settings::list(&NAMES)));
         }
     };
-    model.finish()
+    model.finish(&finishing)
 }
 
 /// Writes a built-in scene as `scene.obj`, `scene.mtl`, `textures/*.png` and `view.json`, whole or not at all.
@@ -106,7 +130,16 @@ pub fn generate(name: &str) -> Result<Model> {
 /// # Errors
 /// If there is no scene of that name, or if `folder` exists and is not an empty folder, or cannot be written.
 pub fn write(name: &str, folder: &Path) -> Result<()> {
-    export::write_model(&generate(name)?, folder)
+    write_watched(name, folder, &Monitor::default())
+}
+
+/// As [`write()`], with progress; it ends when it is cancelled, and leaves nothing behind then.
+///
+/// # Errors
+/// Those of [`write()`], or [`Error::Cancelled`].
+pub fn write_watched(name: &str, folder: &Path, monitor: &Monitor) -> Result<()> {
+    let model = generate_watched(name, &monitor.part("scene", 0.0, 0.5))?;
+    export::write_model(&model, folder, &monitor.part("scene", 0.5, 1.0))
 }
 
 /// Makes a built-in scene ready to be drawn, without files: the same scene as loading what [`write()`] wrote.
@@ -114,7 +147,16 @@ pub fn write(name: &str, folder: &Path) -> Result<()> {
 /// # Errors
 /// If there is no scene of that name; the message lists those that exist.
 pub fn to_scene(name: &str) -> Result<Scene> {
-    convert::scene_of(&generate(name)?)
+    to_scene_watched(name, &Monitor::default())
+}
+
+/// As [`to_scene`], with progress; it ends when it is cancelled.
+///
+/// # Errors
+/// Those of [`to_scene`], or [`Error::Cancelled`].
+pub fn to_scene_watched(name: &str, monitor: &Monitor) -> Result<Scene> {
+    let model = generate_watched(name, &monitor.part("scene", 0.0, 0.8))?;
+    convert::scene_of(model, &monitor.part("scene", 0.8, 1.0))
 }
 
 /// Reads a generator's parameters.
@@ -147,6 +189,7 @@ mod tests {
             "runner" => include_str!("../../../scenes/runner/parameters.json"),
             "kitchen" => include_str!("../../../scenes/kitchen/parameters.json"),
             "conference" => include_str!("../../../scenes/conference/parameters.json"),
+            "courtyard" => include_str!("../../../scenes/courtyard/parameters.json"),
             _ => include_str!("../../../scenes/bathroom/parameters.json"),
         };
         assert!(text.contains(from), "{from}");
@@ -156,9 +199,10 @@ mod tests {
             "runner" => runner::generate(&parameters(scene, &text)?, "{}"),
             "kitchen" => kitchen::generate(&parameters(scene, &text)?, "{}"),
             "conference" => conference::generate(&parameters(scene, &text)?, "{}"),
+            "courtyard" => courtyard::generate(&parameters(scene, &text)?, "{}", &Monitor::default()),
             _ => bathroom::generate(&parameters(scene, &text)?, "{}"),
         };
-        model?.finish()
+        model?.finish(&Monitor::default())
     }
 
     #[test]
@@ -202,6 +246,16 @@ mod tests {
             ("\"at\": [0.0, 1.88, -1.3]", "\"at\": [0.0, 2.88, -1.3]", "`lamps.at` is 2.88"),
             ("\"battens\"", "\"battons\"", "unknown field `battons`"),
         ];
+        let courtyard = [
+            ("\"bay\": 2.4", "\"bay\": 1", "`bay` is 1; it must lie between"),
+            ("\"bays\": [5, 6]", "\"bays\": [5, 60]", "`bays` is 60"),
+            ("\"at\": [4.3, 2.2]", "\"at\": [5.3, 2.2]", "`trees.at` is 5.3"),
+            ("\"trunk\": 1.6", "\"trunk\": 16", "`trees.trunk` is 16"),
+            ("\"tree_leaves\": 62000", "\"tree_leaves\": 0", "`tree_leaves` is 0"),
+            ("\"fountain\": [0.0, 0.3]", "\"fountain\": [0.0, 9]", "`fountain` is 9"),
+            ("\"roof_tile\": 0.24", "\"roof_tile\": 0", "`roof_tile` is 0"),
+            ("\"pots\"", "\"pot\"", "unknown field `pot`"),
+        ];
         let bathroom = [
             ("\"tiles\": 0.98", "\"tiles\": 2", "`room.tiles` is 2"),
             ("\"far\": -0.6", "\"far\": -1.5", "`window.far` is -1.5"),
@@ -218,6 +272,7 @@ mod tests {
             ("runner", runner.as_slice()),
             ("kitchen", kitchen.as_slice()),
             ("conference", conference.as_slice()),
+            ("courtyard", courtyard.as_slice()),
             ("bathroom", bathroom.as_slice()),
         ] {
             for (from, to, expected) in cases {

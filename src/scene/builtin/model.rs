@@ -5,6 +5,7 @@ use std::collections::HashMap;
 
 use super::mesh::Mesh;
 use super::paint::Canvas;
+use crate::monitor::Monitor;
 use crate::scene::Surface;
 use crate::{Error, Result};
 
@@ -141,9 +142,12 @@ impl Model {
 
     /// Puts vertices in the order of their first use and rounds all coordinates to the few digits that the OBJ file shows (positions to 0.01 mm), so that the file and
     /// the model hold the same numbers; checks that every name resolves and every object has triangles.
-    pub(super) fn finish(mut self) -> Result<Model> {
+    pub(super) fn finish(mut self, monitor: &Monitor) -> Result<Model> {
         let snap = |v: f32, steps: f32| (v * steps).round() / steps + 0.0;
-        for group in &mut self.groups {
+        let count = self.groups.len() as f32;
+        for (k, group) in self.groups.iter_mut().enumerate() {
+            monitor.check()?;
+            monitor.tell(k as f32 / count);
             group.mesh.sort_vertices();
             let mesh = &mut group.mesh;
             for p in &mut mesh.positions {

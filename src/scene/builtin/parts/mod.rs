@@ -8,6 +8,7 @@ pub mod cloth;
 pub mod crockery;
 pub mod cupboards;
 pub mod finishes;
+pub mod foliage;
 pub mod food;
 pub mod furniture;
 pub mod lamps;
