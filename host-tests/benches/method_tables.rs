@@ -6,12 +6,11 @@
 //! PART is part of a table's name; all by default.
 #![allow(clippy::unwrap_used, missing_docs)]
 
-use rarefy::internal::analysis::metrics::{self, Rgb8};
+use rarefy::internal::analysis::compare::counted::{Counted, Reference};
+use rarefy::internal::analysis::report::figures::Figures;
+use rarefy::internal::analysis::report::plan;
 use rarefy::internal::device::open::{DeviceChoice, DeviceOptions};
-use rarefy::internal::layout::{PLANE_OBJECT, PLANE_SHADOW};
-use rarefy::internal::method::counts::Keep;
 use rarefy::internal::method::options::*;
-use rarefy::internal::render::frame::FrameStats;
 use rarefy::internal::render::renderer::Renderer;
 use rarefy_host_tests::command::root;
 
@@ -39,19 +38,8 @@ fn fast(label: &str, change: impl FnOnce(&mut Method)) -> Variant {
     (label.to_owned(), method)
 }
 
-/// Both levels' tolerances scaled: distances and slopes times `factor`, and as much farther from 1 the dot product.
-fn scaled(name: &str, mut method: Method, factor: f32) -> Variant {
-    for t in [&mut method.checks.fine, &mut method.checks.coarse] {
-        let t_norm = 1.0 - factor * (1.0 - t.t_norm);
-        *t = Tolerances {
-            t_pos: factor * t.t_pos,
-            t_norm,
-            t_conv: (factor * t.t_conv).min(1.0),
-            t_gcol: factor * t.t_gcol,
-            ..*t
-        };
-    }
-    (format!("{name} x {factor}"), method)
+fn scaled(name: &str, method: Method, factor: f32) -> Variant {
+    (format!("{name} x {factor}"), plan::scaled(method, factor))
 }
 
 fn set_rules(method: &mut Method, thin: bool, gaps: bool, probes: bool) {
@@ -128,10 +116,7 @@ fn tables() -> Vec<(&'static str, Vec<Variant>)> {
 struct Scene {
     name: &'static str,
     renderer: Renderer,
-    full: Vec<u32>,
-    stats: FrameStats,
-    objects: Vec<u32>,
-    shadows: Vec<u32>,
+    reference: Reference,
 }
 
 #[derive(Clone, Copy, Default)]
@@ -187,12 +172,8 @@ impl Row {
     }
 }
 
-fn options(size: u32, mode: Mode, method: Method) -> RenderOptions {
-    RenderOptions { width: size, height: size, mode, method, ..RenderOptions::default() }
-}
-
-fn keep() -> Keep {
-    Keep::planes(&[PLANE_OBJECT, PLANE_SHADOW]).and(Keep::COUNTERS)
+fn options(size: u32, method: Method) -> RenderOptions {
+    RenderOptions { width: size, height: size, method, ..RenderOptions::default() }
 }
 
 fn load(folder: &str, name: &'static str, size: u32) -> Option<Scene> {
@@ -209,36 +190,27 @@ fn load(folder: &str, name: &'static str, size: u32) -> Option<Scene> {
         &monitor,
     )
     .unwrap();
-    let frame = renderer.render_exactly(&options(size, Mode::Full, Method::default()), keep()).unwrap();
-    let (objects, shadows) = (renderer.plane(PLANE_OBJECT).unwrap(), renderer.plane(PLANE_SHADOW).unwrap());
-    Some(Scene { name, renderer, full: frame.pixels, stats: frame.stats, objects, shadows })
+    let reference = Reference::draw(&mut renderer, &options(size, Method::default())).unwrap();
+    Some(Scene { name, renderer, reference })
 }
 
 fn measure(scene: &mut Scene, size: u32, method: Method) -> Row {
-    let frame = scene.renderer.render_exactly(&options(size, Mode::Adaptive, method), keep()).unwrap();
-    let picture = |pixels| Rgb8::new(size, size, pixels).unwrap();
-    let (full, test) = (picture(&scene.full), picture(&frame.pixels));
-    let flip = metrics::flip(full, test).unwrap();
-    let mut wrong = |plane, reference: &[u32]| {
-        metrics::wrong_pixels(reference, &scene.renderer.plane(plane).unwrap(), size, size).unwrap()
-    };
-    let object = wrong(PLANE_OBJECT, &scene.objects);
-    let shadow = wrong(PLANE_SHADOW, &scene.shadows);
-    let work = |stats: &FrameStats| stats.work.unwrap().traversal() as f64;
-    let by_class = frame.stats.work_by_class.unwrap().map(|work| work as f64);
-    let average = work(&scene.stats) / f64::from(size * size);
+    let options = options(size, method);
+    let counted = Counted::draw(&mut scene.renderer, &scene.reference, &options).unwrap();
+    let quality = counted.quality_of(&counted.frame.pixels, &scene.reference.frame.pixels, &options).unwrap();
+    let f = Figures::new(&scene.reference, &counted, &quality, scene.renderer.triangle_count(), 1, 0.0);
     Row {
-        traced: frame.stats.ray_traced_ratio(),
-        corrected: frame.stats.ray_traced_ratio_with_correction(),
-        psnr: metrics::psnr(full, test).unwrap().unwrap_or(f64::INFINITY),
-        flip: flip.mean,
-        flip_p99: flip.p99,
-        work: work(&scene.stats) / work(&frame.stats),
-        correction: by_class[2] / by_class.iter().sum::<f64>(),
-        object: object.count as f64,
-        cluster: object.largest_cluster as f64,
-        shadow: shadow.count as f64,
-        packed: by_class[1] / frame.stats.pixels.traced.max(1) as f64 / average,
+        traced: f.traced,
+        corrected: f.traced_with_correction,
+        psnr: f.psnr_db.unwrap_or(f64::INFINITY),
+        flip: f.flip_mean,
+        flip_p99: f.flip_p99,
+        work: f.work_speedup(),
+        correction: f.correction_work(),
+        object: f.wrong_object as f64,
+        cluster: f.wrong_object_cluster as f64,
+        shadow: f.wrong_shadow as f64,
+        packed: f.packed_ray.unwrap_or(0.0),
     }
 }
 

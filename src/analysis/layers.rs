@@ -115,10 +115,7 @@ pub fn draw(layer: Layer, renderer: &mut Renderer, frame: &Frame) -> Result<Vec<
         Layer::Color => Ok(frame.pixels.clone()),
         Layer::Class => Ok(class_picture(&renderer.plane(PLANE_CLASS)?)),
         Layer::FailMask => Ok(fail_mask_picture(&renderer.plane(PLANE_CLASS)?)),
-        Layer::FailedTest(test) => {
-            let lit = |c: u32| if c & test.fail_bit() != 0 { word(255, 255, 255) } else { word(0, 0, 0) };
-            Ok(renderer.plane(PLANE_CLASS)?.into_iter().map(lit).collect())
-        }
+        Layer::FailedTest(test) => Ok(failed_test_picture(&renderer.plane(PLANE_CLASS)?, test)),
         Layer::Object => Ok(renderer.plane(PLANE_OBJECT)?.into_iter().map(object_color).collect()),
         Layer::Normal => normal(renderer),
         Layer::Depth => depth(renderer),
@@ -130,6 +127,12 @@ pub fn draw(layer: Layer, renderer: &mut Renderer, frame: &Frame) -> Result<Vec<
 /// [`Layer::Class`] of a class plane.
 pub fn class_picture(classes: &[u32]) -> Vec<u32> {
     classes.iter().copied().map(class_color).collect()
+}
+
+/// [`Layer::FailedTest`] of a class plane.
+pub fn failed_test_picture(classes: &[u32], test: Test) -> Vec<u32> {
+    let lit = |c: &u32| if c & test.fail_bit() != 0 { word(255, 255, 255) } else { word(0, 0, 0) };
+    classes.iter().map(lit).collect()
 }
 
 /// [`Layer::FailMask`] of a class plane.

@@ -31,6 +31,8 @@ pub enum Command {
     Render(Box<RenderArgs>),
     /// Draw a scene in full and adaptively, in turn, and compare speed, work and quality.
     Compare(Box<CompareArgs>),
+    /// Measure every table and figure of the paper, and write a report beside the published results.
+    Bench(BenchArgs),
     /// Measure the difference of two pictures of one size.
     Diff(DiffArgs),
     /// List OpenCL devices, what was skipped and why, and their limits.
@@ -187,6 +189,28 @@ pub struct CompareArgs {
     /// Also model what lock-step waves of 32, 64 and 128 lanes pay for both ways of drawing.
     #[arg(long)]
     pub wave_model: bool,
+}
+
+/// `rarefy bench`.
+#[derive(Debug, Args)]
+pub struct BenchArgs {
+    /// Scenes in place of the built-in ones: folders, OBJ files, baked files or names. The sweeps keep their own.
+    pub scenes: Vec<PathBuf>,
+    /// Folder for report.html, report.md, report.json and pictures. A run that was ended goes on where it was.
+    #[arg(short, long)]
+    pub output: PathBuf,
+    /// Small pictures: minutes, where all of it takes far longer.
+    #[arg(long)]
+    pub quick: bool,
+    /// Side of the pictures of the main tables, in pixels; the others are larger or smaller with it.
+    #[arg(long, value_name = "PIXELS")]
+    pub size: Option<u32>,
+    /// Which device draws: auto, cpu, twin, opencl or opencl:N.
+    #[arg(long, value_parser = named::<DeviceChoice>, default_value = "auto")]
+    pub device: DeviceChoice,
+    /// Hold the OpenCL device to a profile's limits: none, a built-in name such as adreno-420, or a file.
+    #[arg(long, default_value = "none")]
+    pub profile: OsString,
 }
 
 /// `rarefy diff`.

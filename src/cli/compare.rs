@@ -112,7 +112,7 @@ fn table(renderer: &mut Renderer, options: &RenderOptions, c: &Comparison) -> Ve
         ),
         format!(
             "  packed     a packed ray costs {} average rays; correction {:.1} % of the work",
-            c.packed_ray_work_ratio().map_or("-".to_owned(), |r| format!("{r:.2}")),
+            c.packed_ray_work_ratio.map_or("-".to_owned(), |r| format!("{r:.2}")),
             100.0 * c.correction_work_ratio()
         ),
     ];

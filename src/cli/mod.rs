@@ -4,6 +4,7 @@
 
 mod args;
 mod bake;
+mod bench;
 mod compare;
 mod devices;
 mod diff;
@@ -63,6 +64,7 @@ fn dispatch(command: &Command, interrupt: &Interrupt) -> Result<bool> {
     match command {
         Command::Render(args) => render::run(args, interrupt).map(|()| true),
         Command::Compare(args) => compare::run(args, interrupt).map(|()| true),
+        Command::Bench(args) => bench::run(args, interrupt).map(|()| true),
         Command::Diff(args) => diff::run(args).map(|()| true),
         Command::Devices(args) => devices::run(args).map(|()| true),
         Command::Selftest(args) => selftest::run(args),

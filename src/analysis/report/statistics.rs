@@ -170,7 +170,7 @@ impl CompareReport {
             work_speedup: comparison.work_speedup(),
             efficiency: comparison.efficiency(),
             correction_work_ratio: comparison.correction_work_ratio(),
-            packed_ray_work_ratio: comparison.packed_ray_work_ratio(),
+            packed_ray_work_ratio: comparison.packed_ray_work_ratio,
             psnr_db: quality.psnr_db,
             psnr_interpolated_db: quality.psnr_interpolated_db,
             ssim: quality.ssim,
