@@ -217,7 +217,7 @@ fn bad_input_is_one_clear_error_and_no_file() {
         ("render wall --size 0x0", &["--size", "0x0", "1 to 16384"]),
         ("render wall --size 0x64", &["--size", "0x64"]),
         ("render wall --size 16385x1", &["--size", "16385x1", "1 to 16384"]),
-        ("render cafe --memory-budget 1", &["leaf_triangles", "--memory-budget", "1048576 bytes"]),
+        ("render cafe --device opencl --memory-budget 1", &["leaf_triangles", "--memory-budget", "1048576 bytes"]),
         ("render wall --size -1x4", &["-1x4"]),
         ("render wall --size 64", &["WIDTHxHEIGHT"]),
         ("render wall --size 99999999999x1", &["99999999999x1"]),
