@@ -66,8 +66,11 @@ impl Width {
             Width::Avx512 => level.as_avx512().map(|l| work.run::<_, 2>(l)),
             #[cfg(all(target_arch = "x86_64", not(target_os = "android")))]
             Width::Avx2 => level.as_avx2().map(|l| work.run::<_, 2>(l)),
-            #[cfg(target_arch = "x86_64")]
+            #[cfg(all(target_arch = "x86_64", not(target_os = "android")))]
             Width::Sse2 => level.as_sse2().map(|l| work.run::<_, 4>(l)),
+            // Half as much code: Android's file has a limit, and only emulators are of this kind.
+            #[cfg(all(target_arch = "x86_64", target_os = "android"))]
+            Width::Sse2 => level.as_sse2().map(|l| work.run::<_, 2>(l)),
             #[cfg(target_arch = "aarch64")]
             Width::Neon => level.as_neon().map(|l| work.run::<_, 4>(l)),
             #[allow(unreachable_patterns)]
