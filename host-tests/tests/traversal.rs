@@ -181,7 +181,7 @@ fn planes(prepared: &Prepared, executor: &mut dyn Executor, options: &RenderOpti
     // Between planes lie words that nobody writes.
     let (pitch, samples) = (frame.params().plane_pitch as usize, drawn.pixels.len());
     let attributes = words(executor, &frame, FrameBuffer::Attributes);
-    assert!(attributes.len() % pitch == 0 && samples <= pitch, "{} words, {pitch}", attributes.len());
+    assert!(attributes.len().is_multiple_of(pitch) && samples <= pitch, "{} words, {pitch}", attributes.len());
     (drawn.pixels, attributes.chunks(pitch).flat_map(|plane| plane[..samples].to_vec()).collect())
 }
 
