@@ -11,7 +11,7 @@ mod tables;
 pub use constants::*;
 pub use flags::{FailMask, StepFlags};
 pub use flavour::{BuildFlavour, SHORT_STACK_ENTRIES, Traversal, build_options};
-pub use planes::{base_pixels, base_shift, color_index, grid_items, grid_pixel, plane_index, plane_pitch};
+pub use planes::{base_pixels, base_shift, color_index, grid_items, grid_pixel, plane_index};
 pub use structs::{FrameParams, Light, Material, StepParams, Texture, Triangle, TriangleShading};
 pub use structs::{LayoutEntry, struct_layout};
 pub use tables::tables;

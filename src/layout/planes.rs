@@ -13,17 +13,6 @@ pub fn plane_index(frame: &FrameParams, x: u32, y: u32) -> u32 {
     (phase * frame.phase_height + row) * frame.phase_width + (x >> shift)
 }
 
-/// Words of a cache line, of 64 bytes on nearly all processors.
-const LINE_WORDS: u32 = 16;
-
-/// Words from one plane to the next, for `samples` of them in each: an odd number of cache lines.
-///
-/// A pixel lies at the same place in each plane, and stages read and write many planes of a pixel at once. Caches find a line
-/// by the low bits of its address, so that planes a power of two apart would fight over a few lines of them.
-pub fn plane_pitch(samples: u32) -> u32 {
-    (samples.div_ceil(LINE_WORDS) | 1) * LINE_WORDS
-}
-
 /// Where a pixel's colour lies: row-major within the window.
 #[inline]
 pub fn color_index(frame: &FrameParams, x: u32, y: u32) -> u32 {

@@ -4,7 +4,7 @@
 use glam::Vec3;
 
 use crate::device::frame_memory::FrameInputs;
-use crate::layout::{FrameParams, plane_pitch};
+use crate::layout::FrameParams;
 use crate::math::{cross, normalize};
 use crate::prepare::{PreparedScene, Shading, flatten_lights};
 use crate::scene::View;
@@ -50,7 +50,7 @@ pub fn frame_inputs(
         block,
         phase_width,
         phase_height,
-        plane_pitch: plane_pitch(block * block * phase_width * phase_height),
+        plane_pitch: block * block * phase_width * phase_height,
         light_count: lights.len() as u32,
         depth_limit: if anchor { 2 } else { depth_limit },
         epsilon: scene.epsilon,

@@ -61,7 +61,7 @@ impl Recipe<'_> {
     fn scene(self, monitor: &Monitor) -> Result<Scene> {
         match self {
             Recipe::AsItIs(name) if builtin::NAMES.contains(&name) && !Path::new(name).exists() => {
-                builtin::to_scene(name)
+                builtin::to_scene_watched(name, monitor)
             }
             Recipe::AsItIs(path) => crate::scene::load(Path::new(path), monitor),
             Recipe::Mirrors(steps) => {

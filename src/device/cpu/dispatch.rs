@@ -5,7 +5,7 @@ use fearless_simd::Level;
 use rayon::prelude::*;
 
 use super::lanes::{Lanes, MOST_LANES, Mask};
-use super::pack::pack_count;
+use super::pack::{CHUNK, pack_count};
 use super::packet::Stack;
 use super::ray_tree::{Pixels, trace_pixels};
 use super::similarity::Check;
@@ -137,7 +137,7 @@ impl Work for WideLaunch<'_> {
     fn run<L: Lanes, const K: usize>(self, l: L) {
         match (self.kernel, self.stage) {
             (Kernel::Check, _) => self.check(l),
-            (Kernel::PackCount, _) => (0..self.step.item_count.div_ceil(32))
+            (Kernel::PackCount, _) => (0..self.step.item_count.div_ceil(CHUNK))
                 .into_par_iter()
                 .with_min_len(CHUNKS_AT_ONCE)
                 .for_each(|chunk| pack_count(self.scene, self.step, chunk, self.buffers)),

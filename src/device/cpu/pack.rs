@@ -5,7 +5,7 @@ use crate::device::twin::{FrameBuffers, SceneArgs};
 use crate::layout::*;
 
 /// Items of a chunk, which has one word of flags.
-const CHUNK: u32 = 32;
+pub const CHUNK: u32 = 32;
 
 /// Rows of a tile that a chunk has.
 const CHUNK_ROWS: u32 = CHUNK / PACK_TILE_SIDE;

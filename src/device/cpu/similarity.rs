@@ -294,6 +294,9 @@ impl<L: Lanes> Check<'_, L> {
         let mut found = none;
         let (old_a, old_b) = (*a, *b);
         for (left, right) in [(y, y), (y - dy, y + dy), (y + dy, y - dy)] {
+            if !open.any() {
+                break;
+            }
             let (at_p, at_q) = (self.places(x, left, -side, open), self.places(x, right, side, open));
             let pair = self.same_object(self.object(&at_p), &at_q, open);
             if !pair.any() {

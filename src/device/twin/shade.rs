@@ -17,7 +17,7 @@ pub fn texel_rgb(scene: &SceneArgs, at: u32) -> Vec3 {
 
 /// The four texels around `(s, t)` in `[0, 1)` of texture `id`, upper row first, and the weights of the right and the lower ones.
 #[inline]
-pub fn texel_corners(scene: &SceneArgs, id: u32, s: f32, t: f32) -> ([Vec3; 4], (f32, f32)) {
+fn texel_corners(scene: &SceneArgs, id: u32, s: f32, t: f32) -> ([Vec3; 4], (f32, f32)) {
     let texture = &scene.textures[id as usize];
     let (offset, width, height) = (texture.offset, texture.width, texture.height);
     let (x, y) = (s * width as f32 - 0.5, (1.0 - t) * height as f32 - 0.5);
