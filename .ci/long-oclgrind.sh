@@ -33,5 +33,5 @@ for test in no_kernel_races_or_leaves_its_buffers a_racing_kernel_is_found \
     rm -rf target/tmp/oclgrind target/tmp/option-space
     binary=oclgrind
     case $test in *space_of_options*) binary=option_space ;; esac
-    cargo test --quiet --package rarefy-host-tests --test $binary -- --ignored --exact --nocapture "$test"
+    cargo test --quiet --workspace --test $binary -- --ignored --exact --nocapture "$test"
 done

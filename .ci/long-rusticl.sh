@@ -16,9 +16,10 @@ library >"$scratch/icd/rusticl.icd"
 export OCL_ICD_VENDORS=$scratch/icd RUSTICL_ENABLE=llvmpipe
 export RAREFY_CACHE_DIR=$scratch/cache MESA_SHADER_CACHE_DIR=$scratch/mesa
 
-device=$(cargo run --quiet --package rarefy -- devices | grep '^opencl:0 ') || fail "rusticl shows no device"
+cargo build --quiet --workspace
+device=$(target/debug/rarefy devices | grep '^opencl:0 ') || fail "rusticl shows no device"
 say "$device"
 case $device in *llvmpipe*) ;; *) fail "that is not llvmpipe" ;; esac
 # Not the tests of the context itself, which ask for work-groups of 64: rusticl 22.3 allows a kernel 32 work-items.
-cargo test --quiet --package rarefy-host-tests \
+cargo test --quiet --workspace \
     --test stage_parity --test traversal --test half_limits --test quick_test
