@@ -49,17 +49,18 @@ impl Extent {
             scenes,
             main_side: 1024,
             shown_side: 512,
-            sampled_side: 384,
+            // As in the paper: what supersampling does depends on the picture's size.
+            sampled_side: 1024,
             scaled_sides: vec![256, 512, 1024, 2048],
             rods_side: 256,
             finer: vec![1, 2, 5, 12, 26],
-            repeats: 3,
+            repeats: 5,
         }
     }
 
     /// Everything in small pictures.
     pub fn quick(scenes: Vec<String>) -> Self {
-        Extent { finer: vec![1, 2, 5, 8], ..Extent::whole(scenes) }.with_side(192)
+        Extent { sampled_side: 512, finer: vec![1, 2, 5, 8], repeats: 3, ..Extent::whole(scenes) }.with_side(192)
     }
 
     /// The same with main pictures of another side, and all others smaller or larger with them.
@@ -68,10 +69,11 @@ impl Extent {
         let at_least = |side: u32| side.max(8);
         let mut scaled_sides = [side / 4, side / 2, side, 2 * side].map(at_least).to_vec();
         scaled_sides.dedup();
+        let sampled_side = u64::from(self.sampled_side) * u64::from(side) / u64::from(self.main_side);
         Extent {
             main_side: side,
             shown_side: side.clamp(8, 512),
-            sampled_side: at_least(side / 2),
+            sampled_side: at_least(u32::try_from(sampled_side).unwrap_or(side)),
             scaled_sides,
             rods_side: side.clamp(16, 256),
             ..self
