@@ -8,7 +8,7 @@ use rarefy::internal::analysis::layers;
 use rarefy::internal::analysis::metrics::{CUSTOMARY_GAIN, Rgb8, difference_picture};
 use rarefy::internal::analysis::report::CompareReport;
 use rarefy::internal::analysis::wave_model::wave_model;
-use rarefy::internal::analysis::wave_model::{StageCost, WAVES, WaveModel};
+use rarefy::internal::analysis::wave_model::{LockStep, StageCost, WAVES, WaveModel};
 use rarefy::internal::device::stage::Stage;
 use rarefy::internal::method::fallback::{does_not_pay, may_lose_detail};
 use rarefy::internal::method::options::{Mode, RenderOptions};
@@ -126,19 +126,23 @@ fn table(renderer: &mut Renderer, options: &RenderOptions, c: &Comparison) -> Ve
     lines
 }
 
-/// Divergence by stage and the modelled speedup, for each size of waves.
+/// Divergence by stage and the modelled speedup, for each size of waves, where lanes wait for each other after each loop and
+/// where they wait at the end of an item.
 fn wave_table(model: &WaveModel) -> Vec<String> {
-    let row = |name: &str, cost: &StageCost| {
-        let share = |wave| format!("{:>13.1} {:>10.2}", cost.cost(wave) / 1e6, cost.divergence(wave));
-        format!("  {name:15}{}{}{}", share(0), share(1), share(2))
-    };
     let heads = WAVES.map(|wave| format!("{:>13} {:>10}", format!("{wave}: cost/M"), "divergence")).concat();
     let mut lines = vec!["  waves of lanes in lock step (traversal steps; launches included)".to_owned()];
-    lines.push(format!("  {:15}{heads}", "stage"));
-    lines.extend(model.full.iter().map(|cost| row("full step1", cost)));
-    lines.extend(model.adaptive.iter().map(|cost| row(cost.stage.name(), cost)));
-    let speedups = [0, 1, 2].map(|wave| format!("{:>13.2} {:>10}", model.speedup(wave), "")).concat();
-    lines.push(format!("  {:15}{}", "speedup", speedups.trim_end()));
+    for lock_step in LockStep::ALL {
+        let row = |name: &str, cost: &StageCost| {
+            let share =
+                |wave| format!("{:>13.1} {:>10.2}", cost.cost(lock_step, wave) / 1e6, cost.divergence(lock_step, wave));
+            format!("  {name:15}{}{}{}", share(0), share(1), share(2))
+        };
+        lines.push(format!("  {:15}{heads}", lock_step.name()));
+        lines.extend(model.full.iter().map(|cost| row("full step1", cost)));
+        lines.extend(model.adaptive.iter().map(|cost| row(cost.stage.name(), cost)));
+        let speedups = [0, 1, 2].map(|wave| format!("{:>13.2} {:>10}", model.speedup(lock_step, wave), "")).concat();
+        lines.push(format!("  {:15}{}", "speedup", speedups.trim_end()));
+    }
     lines
 }
 

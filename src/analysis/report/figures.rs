@@ -7,7 +7,7 @@ use super::table::Picture;
 use crate::analysis::compare::counted::{Counted, Reference, traversal_work};
 use crate::analysis::compare::rounds::{Rounds, Spread};
 use crate::analysis::metrics::Quality;
-use crate::analysis::wave_model::{WAVES, WaveModel};
+use crate::analysis::wave_model::{LockStep, WAVES, WaveModel};
 use crate::device::stage::Stage;
 
 /// Stages of an adaptive frame and what lies outside of them.
@@ -86,11 +86,20 @@ pub struct Times {
     pub stages_ms: [f64; STAGES],
 }
 
-/// What waves in lock step pay, in millions of steps, launches included.
+/// What waves in lock step pay.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Waves {
     /// The sizes of waves that were modelled, in lanes.
     pub lanes: [u32; 3],
+    /// Where lanes wait for each other after each loop, as in whole ray trees in one kernel.
+    pub by_loop: WaveCosts,
+    /// Where they wait at the end of an item.
+    pub by_item: WaveCosts,
+}
+
+/// What waves in lock step pay, in millions of steps, launches included.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct WaveCosts {
     /// Full over adaptive, for each size.
     pub speedup: [f64; 3],
     /// The full frame, for each size.
@@ -126,16 +135,25 @@ impl Times {
 impl Waves {
     /// Those of `model`.
     pub fn new(model: &WaveModel) -> Self {
+        Waves {
+            lanes: WAVES.map(|lanes| lanes as u32),
+            by_loop: WaveCosts::new(model, LockStep::ByLoop),
+            by_item: WaveCosts::new(model, LockStep::ByItem),
+        }
+    }
+}
+
+impl WaveCosts {
+    fn new(model: &WaveModel, lock_step: LockStep) -> Self {
         let millions = |cost: f64| cost / 1e6;
         let by_wave = |value: &dyn Fn(usize) -> f64| [0, 1, 2].map(value);
         let of_stage = |stage: Stage| {
             let found = model.adaptive.iter().find(|cost| cost.stage == stage);
-            by_wave(&|wave| found.map_or(0.0, |cost| millions(cost.cost(wave))))
+            by_wave(&|wave| found.map_or(0.0, |cost| millions(cost.cost(lock_step, wave))))
         };
-        Waves {
-            lanes: WAVES.map(|lanes| lanes as u32),
-            speedup: by_wave(&|wave| model.speedup(wave)),
-            full: by_wave(&|wave| millions(model.full.iter().map(|cost| cost.cost(wave)).sum())),
+        WaveCosts {
+            speedup: by_wave(&|wave| model.speedup(lock_step, wave)),
+            full: by_wave(&|wave| millions(model.full.iter().map(|cost| cost.cost(lock_step, wave)).sum())),
             stages: Stage::ALL.map(of_stage).to_vec(),
         }
     }

@@ -202,7 +202,7 @@ mod tests {
         let times = figures.times.as_ref().unwrap();
         assert_eq!(times.repeats, 2);
         assert!(times.speedup.least <= times.speedup.median && times.speedup.median <= times.speedup.most);
-        assert!(figures.waves.as_ref().unwrap().speedup[1] > 0.0);
+        assert!(figures.waves.as_ref().unwrap().by_loop.speedup[1] > 0.0);
         assert_eq!(figures.pictures.len(), 12);
         for picture in &figures.pictures {
             assert!(folder.path().join(&picture.file).is_file(), "{}", picture.file);

@@ -5,7 +5,7 @@
 use serde::{Serialize, Serializer};
 
 use crate::analysis::compare::Comparison;
-use crate::analysis::wave_model::{StageCost, WAVES, WaveModel};
+use crate::analysis::wave_model::{LockStep, StageCost, WAVES, WaveModel};
 use crate::device::executor::ExecutorInfo;
 use crate::device::stage::Stage;
 use crate::method::counts::{PixelCounts, RayCounts, WorkCounts};
@@ -102,7 +102,8 @@ struct AdaptiveReport {
 /// The wave model's part of a comparison.
 #[derive(Debug, Serialize)]
 struct WaveReport {
-    speedup: ByName<f64>,
+    speedup_by_loop: ByName<f64>,
+    speedup_by_item: ByName<f64>,
     full: ByName<StageReport>,
     adaptive: ByName<StageReport>,
 }
@@ -112,8 +113,12 @@ struct StageReport {
     launches: u32,
     round_trips: u32,
     lane_steps: f64,
-    wave_steps: ByName<f64>,
-    divergence: ByName<f64>,
+    /// Where lanes of a wave wait for each other after each loop.
+    wave_steps_by_loop: ByName<f64>,
+    divergence_by_loop: ByName<f64>,
+    /// Where they wait at the end of an item.
+    wave_steps_by_item: ByName<f64>,
+    divergence_by_item: ByName<f64>,
 }
 
 /// Values by names that are data; an object in JSON, in this order.
@@ -234,14 +239,17 @@ impl WaveReport {
                     launches: cost.launches,
                     round_trips: cost.round_trips,
                     lane_steps: cost.lanes,
-                    wave_steps: by_wave(&|wave| cost.waves[wave]),
-                    divergence: by_wave(&|wave| cost.divergence(wave)),
+                    wave_steps_by_loop: by_wave(&|wave| cost.by_loop[wave]),
+                    divergence_by_loop: by_wave(&|wave| cost.divergence(LockStep::ByLoop, wave)),
+                    wave_steps_by_item: by_wave(&|wave| cost.by_item[wave]),
+                    divergence_by_item: by_wave(&|wave| cost.divergence(LockStep::ByItem, wave)),
                 };
                 (cost.stage.name(), report)
             }))
         };
         WaveReport {
-            speedup: by_wave(&|wave| model.speedup(wave)),
+            speedup_by_loop: by_wave(&|wave| model.speedup(LockStep::ByLoop, wave)),
+            speedup_by_item: by_wave(&|wave| model.speedup(LockStep::ByItem, wave)),
             full: stages(&model.full),
             adaptive: stages(&model.adaptive),
         }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Figures for tests of what is made of figures.
 
-use super::figures::{Figures, STAGES, Times, Waves};
+use super::figures::{Figures, STAGES, Times, WaveCosts, Waves};
 use crate::analysis::compare::rounds::Spread;
 
 /// Figures that agree with each other; another `seed`, others. They are binary fractions, which JSON gives back exactly.
@@ -11,6 +11,8 @@ pub fn figures(seed: u32) -> Figures {
     let mut stages_ms = [1.0; STAGES];
     stages_ms[0] = 40.0 + x;
     let sum = stages_ms.iter().sum::<f64>();
+    let waves =
+        WaveCosts { speedup: [2.0, 1.75, 1.5], full: [10.0, 11.0, 12.0], stages: vec![[1.0, 1.25, 1.5]; STAGES - 1] };
     Figures {
         triangles: 1000 + u64::from(seed),
         width: 64,
@@ -38,12 +40,7 @@ pub fn figures(seed: u32) -> Figures {
             speedup: spread(1.75),
             stages_ms,
         }),
-        waves: Some(Waves {
-            lanes: [32, 64, 128],
-            speedup: [2.0, 1.75, 1.5],
-            full: [10.0, 11.0, 12.0],
-            stages: vec![[1.0, 1.25, 1.5]; STAGES - 1],
-        }),
+        waves: Some(Waves { lanes: [32, 64, 128], by_loop: waves.clone(), by_item: waves }),
         pictures: Vec::new(),
     }
 }

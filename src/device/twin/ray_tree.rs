@@ -8,7 +8,7 @@ use super::known_shadows::{KnownShadows, known_shadows};
 use super::planes::{
     Attributes, StoredHit, Words, color_index, hits_differ, pixel_direction, plane_index, store_attributes, store_work,
 };
-use super::scene_args::{SceneArgs, Work, xyz};
+use super::scene_args::{Part, SceneArgs, Tally, Work, xyz};
 use super::shade::{ShadePoint, shade_local, srgb_word};
 use super::traverse::{Hit, any_hit, closest_hit};
 use super::triangle_test::plane_normal;
@@ -81,7 +81,7 @@ pub fn surface_point(scene: &SceneArgs, o: Vec3, d: Vec3, hit: &Hit) -> SurfaceP
 }
 
 /// One bit per light that does not reach the point; those that are known get no ray.
-pub fn shadow_test(scene: &SceneArgs, p: &SurfacePoint, known: &KnownShadows, work: &mut Work) -> u32 {
+pub fn shadow_test(scene: &SceneArgs, p: &SurfacePoint, known: &KnownShadows, tally: &mut impl Tally) -> u32 {
     let o = p.outside(scene);
     let mut bits = 0;
     for (i, light) in scene.lights.iter().enumerate().take(scene.frame.light_count as usize) {
@@ -90,10 +90,11 @@ pub fn shadow_test(scene: &SceneArgs, p: &SurfacePoint, known: &KnownShadows, wo
         if !shadowed && known.lights >> i & 1 != 0 {
             shadowed = known.bits >> i & 1 != 0;
         } else if !shadowed {
-            work.shadow_rays += 1;
+            tally.begins(Part::ShadowRay(i as u32));
+            tally.work().shadow_rays += 1;
             let distance = dot(to_light, to_light).sqrt();
             let reach = if scene.anchor { distance } else { distance * SHADOW_REACH };
-            shadowed = any_hit(scene, o, to_light * (1.0 / distance), reach, work);
+            shadowed = any_hit(scene, o, to_light * (1.0 / distance), reach, tally.work());
         }
         bits |= u32::from(shadowed) << i;
     }
@@ -179,7 +180,7 @@ pub struct Secondary {
 }
 
 /// Sends secondary rays from the first hit `p`.
-pub fn gather_secondary(scene: &SceneArgs, p: &SurfacePoint, d: Vec3, work: &mut Work) -> Secondary {
+pub fn gather_secondary(scene: &SceneArgs, p: &SurfacePoint, d: Vec3, tally: &mut impl Tally) -> Secondary {
     let surface = scene.materials[p.material as usize].surface;
     let mut found = Secondary { gcol: Vec3::ZERO, behind: NO_OBJECT, s: p.s, t: p.t };
     if surface == SURFACE_OPAQUE {
@@ -201,17 +202,19 @@ pub fn gather_secondary(scene: &SceneArgs, p: &SurfacePoint, d: Vec3, work: &mut
                 break;
             }
             split_reflection = false;
+            tally.leaves_surface(chain, spent + panes);
             if at_pane && c.refracted {
                 panes += 1;
             } else {
                 spent += 1;
             }
             if c.refracted {
-                work.refraction_rays += 1;
+                tally.work().refraction_rays += 1;
             } else {
-                work.reflection_rays += 1;
+                tally.work().reflection_rays += 1;
             }
-            let hit = closest_hit(scene, c.origin, c.direction, work);
+            tally.begins(Part::ClosestHit);
+            let hit = closest_hit(scene, c.origin, c.direction, tally.work());
             if hit.triangle == NO_TRIANGLE {
                 sum += c.weight * xyz(scene.frame.background);
                 break;
@@ -221,8 +224,9 @@ pub fn gather_secondary(scene: &SceneArgs, p: &SurfacePoint, d: Vec3, work: &mut
             if chain + 1 == chains && found.behind == NO_OBJECT && !is_pane {
                 (found.behind, found.s, found.t) = (at.object, at.s, at.t);
             }
-            let shadow_bits = shadow_test(scene, &at, &KnownShadows::default(), work);
-            work.shaded += 1;
+            let shadow_bits = shadow_test(scene, &at, &KnownShadows::default(), tally);
+            tally.begins(Part::Shading);
+            tally.work().shaded += 1;
             sum += c.weight * shade_local(scene, &at.shade_point(shadow_bits), -c.direction);
         }
     }
@@ -243,36 +247,51 @@ pub fn needs_correction_ray(frame: &FrameParams, step: &StepParams, planes: &Wor
     false
 }
 
+/// The ray tree of the pixel `(x, y)`: what its ray hits, and its colour. `attributes` hold what the pixel's check left.
+pub fn ray_tree(
+    scene: &SceneArgs,
+    step: &StepParams,
+    attributes: &Words,
+    (x, y): (u32, u32),
+    pixel_class: u32,
+    tally: &mut impl Tally,
+) -> (Attributes, Vec3) {
+    let frame = scene.frame;
+    let o = xyz(frame.eye);
+    let d = normalize(pixel_direction(frame, x, y));
+    tally.begins(Part::ClosestHit);
+    let hit = closest_hit(scene, o, d, tally.work());
+    if hit.triangle == NO_TRIANGLE {
+        return (Attributes::MISS, xyz(frame.background));
+    }
+    tally.begins(Part::Shading);
+    tally.work().shaded += 1;
+    let p = surface_point(scene, o, d, &hit);
+    let known = known_shadows(scene, step, attributes, (x, y), pixel_class, (p.object, p.material));
+    let shadow_bits = shadow_test(scene, &p, &known, tally);
+    let secondary = gather_secondary(scene, &p, d, tally);
+    // The coordinates of a mirror without a texture are free for what is seen in it.
+    let textured = scene.materials[p.material as usize].diffuse_texture != NO_TEXTURE;
+    let a = Attributes {
+        position: p.position,
+        normal: p.normal,
+        s: if textured { p.s } else { secondary.s },
+        t: if textured { p.t } else { secondary.t },
+        object: p.object,
+        shadow_bits,
+        gcol: secondary.gcol,
+        behind: if textured { NO_OBJECT } else { secondary.behind },
+    };
+    let color = shade_local(scene, &p.shade_point(a.shadow_bits), -d) + a.gcol;
+    (a, color)
+}
+
 /// Traces and shades the pixel `(x, y)`; see the kernel for what is written when.
 pub fn trace_pixel(scene: &SceneArgs, x: u32, y: u32, pixel_class: u32, step: &StepParams, out: &FrameBuffers) {
     let mut work = Work::default();
     let frame = scene.frame;
     let at = plane_index(frame, x, y);
-    let o = xyz(frame.eye);
-    let d = normalize(pixel_direction(frame, x, y));
-    let hit = closest_hit(scene, o, d, &mut work);
-    let mut a = Attributes::MISS;
-    let mut color = xyz(frame.background);
-    if hit.triangle != NO_TRIANGLE {
-        work.shaded += 1;
-        let p = surface_point(scene, o, d, &hit);
-        let known = known_shadows(scene, step, &out.attributes, (x, y), pixel_class, (p.object, p.material));
-        let shadow_bits = shadow_test(scene, &p, &known, &mut work);
-        let secondary = gather_secondary(scene, &p, d, &mut work);
-        // The coordinates of a mirror without a texture are free for what is seen in it.
-        let textured = scene.materials[p.material as usize].diffuse_texture != NO_TEXTURE;
-        a = Attributes {
-            position: p.position,
-            normal: p.normal,
-            s: if textured { p.s } else { secondary.s },
-            t: if textured { p.t } else { secondary.t },
-            object: p.object,
-            shadow_bits,
-            gcol: secondary.gcol,
-            behind: if textured { NO_OBJECT } else { secondary.behind },
-        };
-        color = shade_local(scene, &p.shade_point(a.shadow_bits), -d) + a.gcol;
-    }
+    let (a, color) = ray_tree(scene, step, &out.attributes, (x, y), pixel_class, &mut work);
     let word = srgb_word(scene.tables, color);
     if pixel_class != CLASS_BASE || step.flags.contains(StepFlags::STORE) {
         let pitch = frame.plane_pitch;

@@ -39,6 +39,42 @@ pub struct Work {
     pub shaded: u32,
 }
 
+/// What is done with a ray, in the order of the program.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Part {
+    /// The loop that looks for its closest hit.
+    ClosestHit,
+    /// What its hit costs beside loops through the tree.
+    Shading,
+    /// The loop of the shadow ray from its hit to this light.
+    ShadowRay(u32),
+}
+
+/// What a ray tree tells of its work. [`Work`] is told sums; who wants to know what each loop costs listens to the rest.
+pub trait Tally {
+    /// The sums.
+    fn work(&mut self) -> &mut Work;
+
+    /// Ray number `ray` of secondary chain `chain` leaves; what begins from here on is done with it.
+    #[inline]
+    fn leaves_surface(&mut self, chain: u32, ray: u32) {
+        let _ = (chain, ray);
+    }
+
+    /// The sums are about to grow by a part; all before it are done.
+    #[inline]
+    fn begins(&mut self, part: Part) {
+        let _ = part;
+    }
+}
+
+impl Tally for Work {
+    #[inline]
+    fn work(&mut self) -> &mut Work {
+        self
+    }
+}
+
 /// The first three components.
 #[inline]
 pub fn xyz(v: [f32; 4]) -> Vec3 {
