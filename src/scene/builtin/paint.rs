@@ -3,6 +3,8 @@
 //!
 //! As in [`super::mesh`], only `+ - * /` and square roots are used: every platform paints the same bytes.
 
+use rayon::prelude::*;
+
 use super::mesh::{hash, unit};
 
 /// An sRGB colour, each part from 0 to 1.
@@ -63,23 +65,21 @@ pub fn clouds(u: f32, v: f32, cells: u32, seed: u32) -> f32 {
 
 impl Canvas {
     /// A canvas whose pixel colours come from `at(u, v)`, with `u` to the right and `v` downwards from 0 to 1.
-    pub fn new(width: u32, height: u32, at: impl Fn(f32, f32) -> Colour) -> Self {
-        let mut pixels = Vec::with_capacity(width as usize * height as usize);
-        for y in 0..height {
-            for x in 0..width {
-                pixels.push(at((x as f32 + 0.5) / width as f32, (y as f32 + 0.5) / height as f32));
-            }
-        }
-        Canvas { width, height, pixels }
+    pub fn new(width: u32, height: u32, at: impl Fn(f32, f32) -> Colour + Sync) -> Self {
+        let mut canvas = Canvas { width, height, pixels: vec![[0.0; 3]; width as usize * height as usize] };
+        canvas.paint(|u, v, _| at(u, v));
+        canvas
     }
 
-    /// Paints over every pixel: `how` gets `(u, v)` and the colour so far.
-    pub fn paint(&mut self, how: impl Fn(f32, f32, Colour) -> Colour) {
+    /// Paints over every pixel, rows on all threads: `how` gets `(u, v)` and the colour so far.
+    pub fn paint(&mut self, how: impl Fn(f32, f32, Colour) -> Colour + Sync) {
         let (w, h) = (self.width as f32, self.height as f32);
-        for (i, pixel) in self.pixels.iter_mut().enumerate() {
-            let (x, y) = (i as u32 % self.width, i as u32 / self.width);
-            *pixel = how((x as f32 + 0.5) / w, (y as f32 + 0.5) / h, *pixel);
-        }
+        let rows = self.pixels.par_chunks_exact_mut(self.width.max(1) as usize);
+        rows.enumerate().for_each(|(y, row)| {
+            for (x, pixel) in row.iter_mut().enumerate() {
+                *pixel = how((x as f32 + 0.5) / w, (y as f32 + 0.5) / h, *pixel);
+            }
+        });
     }
 
     /// Draws a line with round ends; coordinates and width in parts of the canvas width. `chalk` from 0 to 1 leaves
