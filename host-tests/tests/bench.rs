@@ -105,6 +105,10 @@ fn a_tiny_run_makes_a_whole_report_that_loads_nothing() {
     for part in ["commit", "machine", "driver", "repeats", "spread", "options", "started"] {
         assert!(!json["about"][part].as_str().unwrap().is_empty(), "{part}");
     }
+    // The report that the documentation shows has the same parts.
+    let parts = |text: &str| text.lines().filter(|line| line.starts_with("## ")).map(String::from).collect::<Vec<_>>();
+    let shown = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/report.md")).unwrap();
+    assert_eq!(parts(&shown), parts(&markdown), "to renew: rarefy bench -o report && cp report/report.md docs/");
     // Nothing but the report is left.
     let mut left: Vec<_> = folder.path().join("report").read_dir().unwrap().map(|e| e.unwrap().file_name()).collect();
     left.sort();

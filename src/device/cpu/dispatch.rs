@@ -156,6 +156,24 @@ const CHUNKS_AT_ONCE: usize = 64;
 /// Packets that are traced sooner than another thread wakes up.
 const PACKETS_ALONE: usize = 4;
 
+/// Entries of a list that are put in order before they are cut into packets: those of a few tiles.
+const MOST_ENTRIES: usize = 512;
+
+/// Parts of a list for each thread, at least: the dear ones are not all in one place.
+const PARTS_PER_THREAD: usize = 8;
+
+/// Where a packed pixel lies on a Z-curve: neighbours on it are near each other in both directions, so that packets of
+/// listed pixels are compact. The items of a list do not depend on each other, so their order is ours to choose.
+fn z_order(pixel: u32) -> u32 {
+    let spread = |mut v: u32| {
+        v = (v | v << 8) & 0x00ff_00ff;
+        v = (v | v << 4) & 0x0f0f_0f0f;
+        v = (v | v << 2) & 0x3333_3333;
+        (v | v << 1) & 0x5555_5555
+    };
+    spread(pixel & 0xffff) | spread(pixel >> 16) << 1
+}
+
 /// Pixels of a packet's side: packets are as square as they can be.
 fn packet_shape(rays: u32) -> (u32, u32) {
     let height = 1 << (rays.ilog2() / 2);
@@ -232,31 +250,43 @@ impl WideLaunch<'_> {
 
     fn trace_list<L: Lanes, const K: usize>(&self, l: L) {
         let step = self.step;
-        let rays = (K * L::COUNT) as u32;
-        let packets = 0..step.item_count.div_ceil(rays);
-        let new_stack = || Stack::<L, K>::new(l);
-        let trace = |stack: &mut Stack<L, K>, packet: u32| {
-            if self.is_cancelled() {
-                return;
-            }
-            let mut pixels = Pixels::<K>::NONE;
-            for i in 0..rays.min(step.item_count - packet * rays) {
-                let pixel = self.buffers.list.get(step.list_offset + packet * rays + i);
-                let at = (pixel & 0xffff, pixel >> 16);
-                if step.pixel_class != CLASS_CORRECTED
-                    || needs_correction_ray(self.scene.frame, step, &self.buffers.attributes, at)
-                {
-                    pixels.set::<L>(i as usize, at);
+        let rays = K * L::COUNT;
+        let items = step.item_count as usize;
+        // Short lists are shared out, too.
+        let fair = items / (PARTS_PER_THREAD * rayon::current_num_threads());
+        let part = fair.clamp(rays, MOST_ENTRIES).next_multiple_of(rays);
+        let new_stack = || (Stack::<L, K>::new(l), Vec::with_capacity(part));
+        let trace = |(stack, entries): &mut (Stack<L, K>, Vec<u32>), at: usize| {
+            entries.clear();
+            entries.extend((at..items.min(at + part)).map(|i| self.buffers.list.get(step.list_offset + i as u32)));
+            entries.sort_unstable_by_key(|&pixel| z_order(pixel));
+            for packet in entries.chunks(rays) {
+                if self.is_cancelled() {
+                    return;
                 }
+                self.trace_entries(l, packet, stack);
             }
-            self.trace(l, &pixels, step.pixel_class, stack);
         };
-        if packets.len() <= PACKETS_ALONE {
-            let mut stack = new_stack();
-            packets.for_each(|packet| trace(&mut stack, packet));
+        let parts = items.div_ceil(part);
+        if items <= PACKETS_ALONE * rays {
+            let mut state = new_stack();
+            (0..parts).for_each(|i| trace(&mut state, i * part));
         } else {
-            packets.into_par_iter().for_each_init(new_stack, trace);
+            (0..parts).into_par_iter().for_each_init(new_stack, |state, i| trace(state, i * part));
         }
+    }
+
+    fn trace_entries<L: Lanes, const K: usize>(&self, l: L, entries: &[u32], stack: &mut Stack<L, K>) {
+        let mut pixels = Pixels::<K>::NONE;
+        for (i, &pixel) in entries.iter().enumerate() {
+            let at = (pixel & 0xffff, pixel >> 16);
+            if self.step.pixel_class != CLASS_CORRECTED
+                || needs_correction_ray(self.scene.frame, self.step, &self.buffers.attributes, at)
+            {
+                pixels.set::<L>(i, at);
+            }
+        }
+        self.trace(l, &pixels, self.step.pixel_class, stack);
     }
 
     fn trace<L: Lanes, const K: usize>(&self, l: L, pixels: &Pixels<K>, class: u32, stack: &mut Stack<L, K>) {
@@ -276,5 +306,21 @@ impl<const K: usize> Pixels<K> {
         let (k, lane) = (i / L::COUNT, i % L::COUNT);
         (self.x[k][lane], self.y[k][lane]) = (x, y);
         self.lanes[k] |= 1 << lane;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_z_curve_goes_through_blocks_before_it_leaves_them() {
+        let at = |x: u32, y: u32| z_order(x | y << 16);
+        assert_eq!([at(0, 0), at(1, 0), at(0, 1), at(1, 1), at(2, 0)], [0, 1, 2, 3, 4]);
+        assert_eq!(at(0xffff, 0xffff), u32::MAX);
+        // The 64 pixels of any aligned 8x8 block follow each other.
+        let mut block: Vec<u32> = (0..64).map(|i| at(136 + i % 8, 4096 + i / 8)).collect();
+        block.sort_unstable();
+        assert!(block.windows(2).all(|pair| pair[0] + 1 == pair[1]));
     }
 }
