@@ -13,7 +13,7 @@ mod shower;
 mod surfaces;
 mod vanity;
 
-pub use parameters::{Parameters, Room, Shower, Tub, Window};
+pub use parameters::{Parameters, Room, Shower, Tub};
 
 use super::model::Model;
 use super::parts::at;

@@ -6,6 +6,7 @@ use serde::Deserialize;
 use crate::Result;
 use crate::scene::builtin::check;
 use crate::scene::builtin::parts::check_counts;
+use crate::scene::builtin::parts::room::SideWindow;
 
 /// All parameters of the bathroom; lengths are metres, angles whole turns.
 #[derive(Debug, Clone, Deserialize)]
@@ -16,7 +17,7 @@ pub struct Parameters {
     /// The room's walls.
     pub room: Room,
     /// The window in the right wall.
-    pub window: Window,
+    pub window: SideWindow,
     /// The shower in the right corner at the back.
     pub shower: Shower,
     /// The bath tub.
@@ -61,24 +62,6 @@ pub struct Room {
     pub height: f32,
     /// Height of the tiles outside the shower.
     pub tiles: f32,
-}
-
-/// The window in the right wall.
-#[derive(Debug, Clone, Copy, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Window {
-    /// z of the side nearer to the front.
-    pub near: f32,
-    /// z of the side nearer to the back.
-    pub far: f32,
-    /// Height of the lower border.
-    pub sill: f32,
-    /// Height of the upper border.
-    pub head: f32,
-    /// Thickness of the wall.
-    pub depth: f32,
-    /// Half the width of the bars between the panes.
-    pub bar: f32,
 }
 
 /// The shower in the right corner at the back.

@@ -11,7 +11,7 @@ mod room;
 mod surfaces;
 mod tableware;
 
-pub use parameters::{Chair, Parameters, Room, Table, Window};
+pub use parameters::{Chair, Parameters, Room, Table};
 
 use super::model::Model;
 use super::parts::at;

@@ -6,6 +6,7 @@ use serde::Deserialize;
 use crate::scene::builtin::check;
 use crate::scene::builtin::parts::furniture::ChairPlace;
 use crate::scene::builtin::parts::lamps::Lamp;
+use crate::scene::builtin::parts::room::SideWindow;
 use crate::{Error, Result};
 
 /// All parameters of the café; lengths are metres, angles whole turns.
@@ -17,7 +18,7 @@ pub struct Parameters {
     /// The room's walls.
     pub room: Room,
     /// The window in the left wall.
-    pub window: Window,
+    pub window: SideWindow,
     /// Length of a floor tile.
     pub floor_tile: f32,
     /// Round tables; the first one is laid.
@@ -66,24 +67,6 @@ pub struct Room {
     pub height: f32,
     /// Height of the panelling.
     pub wainscot: f32,
-}
-
-/// The window in the left wall.
-#[derive(Debug, Clone, Copy, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Window {
-    /// z of the side nearer to the front.
-    pub near: f32,
-    /// z of the side nearer to the back.
-    pub far: f32,
-    /// Height of the lower border.
-    pub sill: f32,
-    /// Height of the upper border.
-    pub head: f32,
-    /// Thickness of the wall.
-    pub depth: f32,
-    /// Half the width of the bars between the panes.
-    pub bar: f32,
 }
 
 /// A round table.

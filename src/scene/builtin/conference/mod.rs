@@ -10,7 +10,7 @@ mod seats;
 mod sides;
 mod surfaces;
 
-pub use parameters::{Blinds, Parameters, Room, Table, Windows};
+pub use parameters::{Blinds, Parameters, Table, Windows};
 
 use super::model::Model;
 use super::parts::{at, lamps};

@@ -7,6 +7,7 @@ use crate::Result;
 use crate::scene::builtin::check;
 use crate::scene::builtin::parts::check_counts;
 use crate::scene::builtin::parts::lamps::Lamp;
+use crate::scene::builtin::parts::room::Room;
 
 /// All parameters of the conference room; lengths are metres, angles whole turns.
 #[derive(Debug, Clone, Deserialize)]
@@ -40,22 +41,6 @@ pub struct Parameters {
     pub small_sides: u32,
     /// Width and height of the largest textures, in texels.
     pub texture: u32,
-}
-
-/// The room's walls, floor at y = 0.
-#[derive(Debug, Clone, Copy, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Room {
-    /// x of the left wall.
-    pub left: f32,
-    /// x of the right wall.
-    pub right: f32,
-    /// z of the back wall.
-    pub back: f32,
-    /// z of the front wall, behind the camera.
-    pub front: f32,
-    /// Height of the ceiling.
-    pub height: f32,
 }
 
 /// The windows in the left wall, at equal distances.
@@ -138,12 +123,6 @@ impl Parameters {
                 ("lamps", self.lamps.len() as u32, 1, 16),
             ],
         )?;
-        for l in &self.lamps {
-            check("conference", "lamps.radius", l.radius, 0.05..=0.6)?;
-            check("conference", "lamps.at", l.at[0], r.left..=r.right)?;
-            check("conference", "lamps.at", l.at[1], 1.0..=r.height - 0.3)?;
-            check("conference", "lamps.at", l.at[2], r.back..=r.front)?;
-        }
-        Ok(())
+        r.check_lamps("conference", &self.lamps)
     }
 }

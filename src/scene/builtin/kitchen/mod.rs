@@ -12,7 +12,7 @@ mod stores;
 mod surfaces;
 mod units;
 
-pub use parameters::{Parameters, Room, Table, Window};
+pub use parameters::{Parameters, Table, Window};
 
 use super::model::Model;
 use super::parts::at;

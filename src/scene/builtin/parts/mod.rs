@@ -15,6 +15,7 @@ pub mod lamps;
 pub mod pictures;
 pub mod plants;
 pub mod plumbing;
+pub mod room;
 pub mod shell;
 pub mod smooth;
 pub mod walls;
