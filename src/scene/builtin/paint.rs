@@ -73,6 +73,11 @@ impl Canvas {
 
     /// Paints over every pixel, rows on all threads: `how` gets `(u, v)` and the colour so far.
     pub fn paint(&mut self, how: impl Fn(f32, f32, Colour) -> Colour + Sync) {
+        self.paint_rows(&how);
+    }
+
+    /// One function for all ways to paint: a loop over threads for each is 100 KB of Android's library.
+    fn paint_rows(&mut self, how: &(dyn Fn(f32, f32, Colour) -> Colour + Sync)) {
         let (w, h) = (self.width as f32, self.height as f32);
         let rows = self.pixels.par_chunks_exact_mut(self.width.max(1) as usize);
         rows.enumerate().for_each(|(y, row)| {
