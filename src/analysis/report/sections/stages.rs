@@ -10,8 +10,11 @@ use crate::device::stage::Stage;
 /// Which size of waves the table shows: 64 lanes.
 const WAVE: usize = 1;
 
+/// One of the two sums of the wave model.
+type WhichSum = fn(&Waves) -> &WaveCosts;
+
 /// The two sums of the wave model.
-const LOCK_STEPS: [(&str, fn(&Waves) -> &WaveCosts); 2] =
+const LOCK_STEPS: [(&str, WhichSum); 2] =
     [("lock step by loop", |waves| &waves.by_loop), ("lock step by item", |waves| &waves.by_item)];
 
 pub(super) fn dissection(data: &Data) -> Section {
