@@ -205,12 +205,16 @@ pub fn launch_costs(renderer: &mut Renderer, options: &RenderOptions) -> Result<
     let mut observers: [&mut dyn Hook; 3] = [&mut one_window, &mut before, &mut recording];
     let (_, left) = renderer.render_observed(&options, Keep::COUNTERS, &mut observers, &mut Left::read)?;
     let items = FrameItems::new(before, left)?;
-    let cost = |launch: &RecordedLaunch| LaunchCost {
-        stage: launch.stage,
-        passes: items.passes(launch),
-        waits: matches!(launch.kernel, Kernel::PackCount | Kernel::CorrectCount | Kernel::CorrectTail),
+    let cost = |launch: &RecordedLaunch| {
+        // Tracing again takes as long as the frame took.
+        renderer.monitor().check()?;
+        Ok(LaunchCost {
+            stage: launch.stage,
+            passes: items.passes(launch),
+            waits: matches!(launch.kernel, Kernel::PackCount | Kernel::CorrectCount | Kernel::CorrectTail),
+        })
     };
-    Ok(recording.launches.iter().map(cost).collect())
+    recording.launches.iter().map(cost).collect()
 }
 
 #[cfg(test)]
