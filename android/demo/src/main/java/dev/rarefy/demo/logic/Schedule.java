@@ -38,7 +38,6 @@ abstract class Schedule {
   boolean close;
   boolean retryCrashed;
   int thermalStatus;
-  @Nullable Runnable listener;
   Benchmark.@Nullable Plan plan;
 
   // What is there.
@@ -69,6 +68,12 @@ abstract class Schedule {
   long doneNanos;
   final Resolution resolution = new Resolution();
 
+  /** Held while the listener is told; it may look at the state, so that this comes first. */
+  private final Object telling = new Object();
+
+  /** Guarded by {@link #telling}. */
+  private @Nullable Runnable listener;
+
   Schedule(SceneChoice scene, Settings settings, @Nullable Camera camera) {
     this.scene = scene;
     this.settings = settings;
@@ -76,9 +81,12 @@ abstract class Schedule {
     drawnSettings = settings;
   }
 
-  /** Who is told, on any thread and without a lock held, that {@link #state} is another one. */
+  /**
+   * Who is told, on any thread, that {@link #state} is another one; it must wait for nothing. Once
+   * this returns, the one before is told nothing any more: an activity that is gone stays so.
+   */
   public void setListener(@Nullable Runnable listener) {
-    synchronized (lock) {
+    synchronized (telling) {
       this.listener = listener;
     }
   }
@@ -262,9 +270,9 @@ abstract class Schedule {
 
   /** Ends the thread and frees all. Nothing may be asked of the loop afterwards but its state. */
   public void quit() {
+    setListener(null);
     synchronized (lock) {
       quit = true;
-      listener = null;
       abandon();
       changed(false);
     }
@@ -302,13 +310,12 @@ abstract class Schedule {
         && info.isRefined();
   }
 
+  /** Without the lock. */
   void tell() {
-    Runnable told;
-    synchronized (lock) {
-      told = listener;
-    }
-    if (told != null) {
-      told.run();
+    synchronized (telling) {
+      if (listener != null) {
+        listener.run();
+      }
     }
   }
 

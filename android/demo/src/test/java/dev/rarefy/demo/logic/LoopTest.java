@@ -13,6 +13,7 @@ import java.nio.charset.StandardCharsets;
 import java.util.Arrays;
 import java.util.List;
 import java.util.concurrent.CopyOnWriteArrayList;
+import java.util.concurrent.atomic.AtomicBoolean;
 import java.util.concurrent.atomic.AtomicInteger;
 
 /** The loop with the real library: what is wanted last is what is shown, whatever happens. */
@@ -33,6 +34,7 @@ public final class LoopTest {
     idleFramesAreMeasured();
     theBackgroundFreesAndKeepsTheCamera();
     wishesThatChangeAtOnceDoNoHarm();
+    aListenerThatIsGoneIsToldNothing();
     quittingEndsWhateverGoesOn();
     openedFilesAreDrawn(new File(arguments[0]), new File(arguments[1]));
     Stage.closeReferences();
@@ -322,6 +324,34 @@ public final class LoopTest {
       }
       Check.equal(camera, stage.done().camera());
       stage.shows(Stage.WALL, PLAIN, camera, Stage.WIDTH, Stage.HEIGHT);
+    }
+  }
+
+  /** Also not by the loop's thread that was about to tell it as it went. */
+  private static void aListenerThatIsGoneIsToldNothing() throws Exception {
+    Thread owner = Thread.currentThread();
+    try (Stage stage = new Stage(Stage.WALL, PLAIN)) {
+      stage.begin();
+      Camera camera = stage.done().camera();
+      AtomicBoolean told = new AtomicBoolean();
+      AtomicBoolean gone = new AtomicBoolean();
+      AtomicInteger late = new AtomicInteger();
+      stage.loop.setListener(
+          () -> {
+            told.set(true);
+            // The owner goes while it is told: it waits, or is gone too soon.
+            while (owner.getState() != Thread.State.BLOCKED && !gone.get()) {
+              Thread.yield();
+            }
+            late.addAndGet(gone.get() ? 1 : 0);
+          });
+      stage.loop.setCamera(camera.orbit(1, 0));
+      Check.until("told", told::get);
+      stage.loop.setListener(null);
+      gone.set(true);
+      stage.loop.setCamera(camera);
+      stage.done();
+      Check.equal(0, late.get());
     }
   }
 
