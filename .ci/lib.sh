@@ -138,3 +138,18 @@ need_rust_with_source() {
     done
     fail "no rustc with the source of its standard library (rustup component add rust-src)"
 }
+
+# need_arm REASON TARGET PREFIX QEMU LOADER PACKAGE...: a cross compiler and qemu for an ARM target of Rust's; cargo links
+# with the one and runs with the other. PREFIX is what the compiler's name and its folder of libraries begin with, LOADER
+# a file in there.
+need_arm() {
+    local reason=$1 target=${2//-/_} prefix=$3 qemu=$4 loader=$5
+    shift 5
+    # Some machines have them from elsewhere.
+    have "$prefix-gcc" && have "$qemu" && [ -e "/usr/$prefix/lib/$loader" ] || need_packages "$reason" "$@" ||
+        fail "$reason needs a cross compiler for ARM and qemu"
+    need_rust_with_source "$reason"
+    export "CARGO_TARGET_${target^^}_LINKER=$prefix-gcc" "CARGO_TARGET_${target^^}_RUNNER=$qemu -L /usr/$prefix"
+    # There is no OpenCL of that architecture here: the kernels' tests run on the machine's own.
+    export RAREFY_TEST_OPENCL=none RAREFY_TEST_CLANG=none
+}

@@ -11,16 +11,9 @@ need_rust
 cargo build --quiet --workspace
 native=$PWD/target/debug/rarefy
 
-# Some machines have them from elsewhere.
-have arm-linux-gnueabihf-gcc && have qemu-arm && [ -e /usr/arm-linux-gnueabihf/lib/ld-linux-armhf.so.3 ] ||
-    need_packages "the 32-bit tests" gcc-arm-linux-gnueabihf libc6-dev-armhf-cross qemu-user ||
-    fail "the 32-bit tests need an ARM cross compiler and qemu"
-need_rust_with_source "the 32-bit test"
 target=armv7-unknown-linux-gnueabihf
-export CARGO_TARGET_ARMV7_UNKNOWN_LINUX_GNUEABIHF_LINKER=arm-linux-gnueabihf-gcc
-export CARGO_TARGET_ARMV7_UNKNOWN_LINUX_GNUEABIHF_RUNNER="qemu-arm -L /usr/arm-linux-gnueabihf"
-# There is no 32-bit OpenCL here: the kernels' tests run on the machine's own architecture.
-export RAREFY_TEST_OPENCL=none RAREFY_TEST_CLANG=none
+need_arm "the 32-bit tests" $target arm-linux-gnueabihf qemu-arm ld-linux-armhf.so.3 \
+    gcc-arm-linux-gnueabihf libc6-dev-armhf-cross qemu-user
 cross() { cargo "$@" --quiet --package rarefy -Zbuild-std --target $target --target-dir target-arm32; }
 cross test --lib --no-default-features
 

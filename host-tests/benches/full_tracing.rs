@@ -9,16 +9,21 @@
 //! Times are whole frames: `frame ms` of Rarefy includes the read-back of the picture, which Embree draws straight into
 //! memory; `kernel ms` is what the device itself reports. The ratio is Embree's frame over Rarefy's frame, the median of
 //! all rounds. Exit status: 1 if the ray counts of a scene differ by more than 0.5 %, 0 otherwise: the time itself
-//! decides nothing. The variable DEVICE chooses another device (`cpu`, `twin`, `opencl:N`), ANCHOR_MODE how Embree traces (`single`,
-//! `packet8`, `packet16`), ANCHOR_CONFIG what it is told (`max_isa=avx2`), SHARED another folder in place of `../shared`.
+//! decides nothing. The variable DEVICE chooses another device (`cpu`, `twin`, `opencl:N`), LANES how many lanes the engine of
+//! `cpu` has, ANCHOR_MODE how Embree traces (`single`, `packet8`, `packet16`), ANCHOR_CONFIG what it is told
+//! (`max_isa=avx2`), SHARED another folder in place of `../shared`.
+//!
+//! ADAPTIVE=1 draws an adaptive frame of each preset in every round as well, and says how many times as fast as our own full
+//! frame and as Embree's full frame it is.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 use std::sync::Arc;
 
+use rarefy::internal::device::cpu::Width;
 use rarefy::internal::device::open::{DeviceChoice, DeviceOptions};
 use rarefy::internal::method::counts::Keep;
-use rarefy::internal::method::options::{Mode, RenderOptions};
+use rarefy::internal::method::options::{Method, Mode, Preset, RenderOptions};
 use rarefy::internal::prepare::{PreparedScene, Shading};
 use rarefy::internal::render::renderer::Renderer;
 
@@ -117,11 +122,27 @@ fn median(values: &mut [f64]) -> f64 {
 struct Measured {
     ratio: f64,
     rays_agree: bool,
+    /// Of each preset: our full frame, and Embree's, over the adaptive one.
+    adaptive: Vec<(Preset, [f64; 2])>,
+}
+
+/// The lanes that LANES asks for; `None` for the widest.
+fn lanes() -> BenchResult<Option<Width>> {
+    let Ok(words) = std::env::var("LANES") else { return Ok(None) };
+    let lanes: usize = words.parse()?;
+    let width = Width::available().find(|width| width.lanes() == lanes);
+    Ok(Some(width.ok_or_else(|| format!("this processor has no vectors of {lanes} lanes"))?))
+}
+
+fn geometric_mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
+    let count = values.len() as f64;
+    f64::exp(values.map(f64::ln).sum::<f64>() / count)
 }
 
 fn measure(anchor: &Path, scene: &Path, name: &str, rounds: usize) -> BenchResult<Measured> {
     let options = DeviceOptions {
         device: std::env::var("DEVICE").map_or(Ok(DeviceChoice::OpenCl(None)), |words| words.parse())?,
+        cpu_width: lanes()?,
         ..DeviceOptions::default()
     };
     let monitor = rarefy::Monitor::default();
@@ -134,6 +155,8 @@ fn measure(anchor: &Path, scene: &Path, name: &str, rounds: usize) -> BenchResul
     renderer.render_exactly(&frame, Keep::default())?; // builds the timed program
     let (mut theirs, mut whole, mut kernel, mut ratios) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     let mut their_rays = [0; 3];
+    let presets = if std::env::var_os("ADAPTIVE").is_some() { &Preset::ALL[..] } else { &[] };
+    let mut adaptive: Vec<[Vec<f64>; 2]> = vec![Default::default(); presets.len()];
     for _ in 0..rounds {
         let embree = run_anchor(anchor, scene)?;
         let (mut frame_ms, mut kernel_ms) = (Vec::new(), Vec::new());
@@ -143,6 +166,16 @@ fn measure(anchor: &Path, scene: &Path, name: &str, rounds: usize) -> BenchResul
             kernel_ms.push(stats.stages_ms.iter().sum());
         }
         let ms = median(&mut frame_ms);
+        for (&preset, ratios) in presets.iter().zip(&mut adaptive) {
+            let frame = RenderOptions { mode: Mode::Adaptive, method: Method::from(preset), ..frame.clone() };
+            let mut frame_ms = Vec::new();
+            for _ in 0..FRAMES {
+                frame_ms.push(renderer.render_exactly(&frame, Keep::default())?.stats.frame_ms);
+            }
+            let adaptive_ms = median(&mut frame_ms);
+            ratios[0].push(ms / adaptive_ms);
+            ratios[1].push(embree.frame_ms / adaptive_ms);
+        }
         ratios.push(embree.frame_ms / ms);
         theirs.push(embree.frame_ms);
         whole.push(ms);
@@ -170,7 +203,13 @@ fn measure(anchor: &Path, scene: &Path, name: &str, rounds: usize) -> BenchResul
         ratios[ratios.len() - 1],
         if rays_agree { "" } else { "  RAYS DIFFER BY MORE THAN 0.5 %" }
     );
-    Ok(Measured { ratio, rays_agree })
+    let adaptive =
+        presets.iter().zip(&mut adaptive).map(|(&preset, [full, embree])| (preset, [median(full), median(embree)]));
+    let adaptive: Vec<_> = adaptive.collect();
+    for (preset, [full, embree]) in &adaptive {
+        println!("{:<12} {preset}: {full:.3} times as fast as our full frame, {embree:.3} times as Embree's", "");
+    }
+    Ok(Measured { ratio, rays_agree, adaptive })
 }
 
 fn run() -> BenchResult<bool> {
@@ -207,24 +246,28 @@ fn run() -> BenchResult<bool> {
         "least",
         "most"
     );
-    let (mut logarithms, mut count, mut agree) = (0.0, 0.0, true);
+    let mut all: Vec<Measured> = Vec::new();
     for name in SCENES.into_iter().filter(|name| names.is_empty() || names.iter().any(|wanted| wanted == name)) {
         let scene = folder.join(name);
         if !scene.is_dir() {
             println!("skipped: {name} is not here");
             continue;
         }
-        let measured = measure(&anchor, &scene, name, rounds)?;
-        logarithms += measured.ratio.ln();
-        count += 1.0;
-        agree &= measured.rays_agree;
+        all.push(measure(&anchor, &scene, name, rounds)?);
     }
-    if count > 0.0 {
-        let mean = f64::exp(logarithms / count);
+    let agree = all.iter().all(|measured| measured.rays_agree);
+    if let Some(first) = all.first() {
+        let mean = geometric_mean(all.iter().map(|measured| measured.ratio));
         let verdict = if mean >= GOAL { "reached" } else { "missed" };
         println!(
             "geometric mean of the ratios: {mean:.3} of Embree; goal of OpenCL against single rays {GOAL}: {verdict}"
         );
+        for (i, (preset, _)) in first.adaptive.iter().enumerate() {
+            let [full, embree] = [0, 1].map(|of| geometric_mean(all.iter().map(|measured| measured.adaptive[i].1[of])));
+            println!(
+                "{preset}, geometric mean: {full:.3} times as fast as our full frames, {embree:.3} times as Embree's"
+            );
+        }
     }
     if !agree {
         println!("the ray counts differ: the two did not do equal work");

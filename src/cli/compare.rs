@@ -12,7 +12,7 @@ use rarefy::internal::analysis::wave_model::{LockStep, StageCost, WAVES, WaveMod
 use rarefy::internal::device::stage::Stage;
 use rarefy::internal::method::fallback::{does_not_pay, may_lose_detail};
 use rarefy::internal::method::options::{Mode, RenderOptions};
-use rarefy::internal::render::picture::write_png;
+use rarefy::internal::render::picture::write_small_png;
 use rarefy::internal::render::renderer::Renderer;
 use rarefy::{Cancel, Error, Result};
 
@@ -163,7 +163,7 @@ fn write_pictures(folder: &Path, options: &RenderOptions, c: &Comparison, cancel
     for (name, ((width, height), pixels)) in PICTURES.into_iter().zip(pictures) {
         let path = folder.join(name);
         cancel.check()?;
-        write_png(&path, width, height, &pixels)?;
+        write_small_png(&path, width, height, &pixels)?;
         lines.push(path.display().to_string());
     }
     Ok(lines)

@@ -3,7 +3,7 @@
 
 use rarefy::Result;
 use rarefy::internal::analysis::metrics::{CUSTOMARY_GAIN, Rgb8, compare, difference_picture};
-use rarefy::internal::render::picture::{read_rgb8, write_png};
+use rarefy::internal::render::picture::{read_rgb8, write_small_png};
 use serde::Serialize;
 
 use super::args::DiffArgs;
@@ -34,7 +34,7 @@ pub fn run(args: &DiffArgs) -> Result<()> {
     let test = Rgb8::new(test_width, test_height, &test)?;
     let quality = compare(reference, test)?;
     if let Some(path) = &args.output {
-        write_png(path, width, height, &difference_picture(reference, test, CUSTOMARY_GAIN)?)?;
+        write_small_png(path, width, height, &difference_picture(reference, test, CUSTOMARY_GAIN)?)?;
     }
     let json = args.json.as_deref();
     let psnr = quality.psnr_db.map_or("equal pictures".to_owned(), |db| format!("{db:.2} dB"));

@@ -8,7 +8,7 @@ use rarefy::internal::analysis::layers::{self, Layer};
 use rarefy::internal::analysis::report::RenderReport;
 use rarefy::internal::method::counts::Keep;
 use rarefy::internal::method::options::Mode;
-use rarefy::internal::render::picture::write_png;
+use rarefy::internal::render::picture::{write_png, write_small_png};
 use rarefy::{Error, Result};
 
 use super::args::RenderArgs;
@@ -56,7 +56,7 @@ pub fn run(args: &RenderArgs, interrupt: &Interrupt) -> Result<()> {
             cancel.check()?;
             let is_color = *layer == Layer::Color;
             let (width, height) = if is_color { (frame.width, frame.height) } else { options.sample_size() };
-            write_png(path, width, height, &layers::draw(*layer, &mut renderer, &frame)?)?;
+            write_small_png(path, width, height, &layers::draw(*layer, &mut renderer, &frame)?)?;
         }
         Ok(())
     })?;

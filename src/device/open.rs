@@ -3,6 +3,7 @@
 
 use std::path::PathBuf;
 
+use super::cpu::Width;
 use super::kernels::Mutation;
 use super::opencl::executor::OpenClExecutor;
 use super::opencl::{self, CacheFolder, Faults, OpenOptions};
@@ -52,6 +53,10 @@ pub struct DeviceOptions {
     /// For tests: kernels with bounds checks on an OpenCL device; an access beyond a buffer is an error.
     #[doc(hidden)]
     pub bounds_checks: bool,
+    /// For benchmarks: the lanes of the wide engine under [`DeviceChoice::Cpu`], where the processor has them; its widest
+    /// ones otherwise.
+    #[doc(hidden)]
+    pub cpu_width: Option<Width>,
     /// For tests: when the OpenCL device is lost.
     #[doc(hidden)]
     pub faults: Faults,

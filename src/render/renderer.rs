@@ -456,7 +456,10 @@ fn open_executor(
     monitor: &Monitor,
 ) -> Result<Opened> {
     let (first, is_auto) = match options.device {
-        DeviceChoice::Cpu => return Ok(Opened::on_cpu(CpuExecutor::default())),
+        DeviceChoice::Cpu => {
+            let engine = options.cpu_width.and_then(CpuExecutor::of_width).unwrap_or_default();
+            return Ok(Opened::on_cpu(engine));
+        }
         DeviceChoice::Twin => return Ok(Opened::on_cpu(TwinExecutor::default())),
         DeviceChoice::Auto => (0, true),
         DeviceChoice::OpenCl(index) => (index.unwrap_or(0), false),

@@ -95,10 +95,18 @@ fn frames() -> [RenderOptions; 3] {
 /// # Errors
 /// A limit of the device, a kernel that does not build, or a failing call.
 pub fn stage_parity(scene: &Arc<PreparedScene>, device: &mut dyn Executor) -> Result<Vec<KernelParity>> {
+    parity_of_frames(scene, device, true)
+}
+
+fn parity_of_frames(
+    scene: &Arc<PreparedScene>,
+    device: &mut dyn Executor,
+    counters: bool,
+) -> Result<Vec<KernelParity>> {
     let mut twin = TwinExecutor::imitating(device);
     let mut parity = Parity::new(device, scene)?;
     for options in frames() {
-        draw_test_frame(&mut twin, scene, &options, true, &mut [&mut parity])?;
+        draw_test_frame(&mut twin, scene, &options, counters, &mut [&mut parity])?;
     }
     Ok(parity.results)
 }
@@ -125,6 +133,7 @@ fn check_known(name: &str, executor: &mut dyn Executor, scene: &Arc<PreparedScen
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::device::cpu::Width;
     use crate::device::open::DeviceChoice;
 
     #[test]
@@ -143,5 +152,21 @@ mod tests {
         let result = SelfTest { device: "Adreno".into(), checks: vec![failed] };
         assert!(!result.passed());
         assert_eq!(result.require().unwrap_err().to_string(), "self-test failed on Adreno: step2c: 7 words");
+    }
+
+    /// Here as well as in the tests on the desktop, since this is what runs on other processors.
+    #[test]
+    fn every_launch_of_the_engine_equals_the_twin_on_every_width() {
+        for name in [SCENE, "mirror-room", "cafe"] {
+            let scene = prepared(name, Shading::Full).unwrap();
+            for width in Width::available() {
+                let mut engine = CpuExecutor::of_width(width).unwrap();
+                let results = parity_of_frames(&scene, &mut engine, false).unwrap();
+                assert!(results.len() >= 8, "{}", results.len());
+                for result in results {
+                    assert_eq!((result.different, result.first), (0, None), "{name}, {width:?}, {:?}", result.stage);
+                }
+            }
+        }
     }
 }

@@ -8,7 +8,7 @@ use super::measure::{PICTURES, file_stem};
 use super::sections::Group;
 use super::table::Picture;
 use crate::error::Result;
-use crate::render::picture::{read_rgb8, write_png};
+use crate::render::picture::{read_rgb8, write_small_png};
 
 /// Side of what is cut out, in pixels, where the picture has as many.
 const SIDE: u32 = 56;
@@ -44,7 +44,7 @@ pub fn close_up(folder: &Path, scene: &str, uncorrected: &Figures, corrected: &F
     ] {
         let file = format!("{PICTURES}/close-up-{}-{kind}.png", file_stem(scene));
         let (width, height, words) = pixels.enlarged(corner);
-        write_png(folder.join(&file), width, height, &words)?;
+        write_small_png(folder.join(&file), width, height, &words)?;
         let caption = format!("{caption}, {SIDE}x{SIDE} pixels from {}, {}", corner.0, corner.1);
         pictures.push(Picture { file, width, height, alt: format!("{scene}, enlarged, {kind}"), caption });
     }

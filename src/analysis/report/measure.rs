@@ -20,7 +20,7 @@ use crate::method::counts::Keep;
 use crate::method::options::{Mode, RenderOptions, Test};
 use crate::monitor::Monitor;
 use crate::prepare::PreparedScene;
-use crate::render::picture::write_png;
+use crate::render::picture::write_small_png;
 use crate::render::renderer::Renderer;
 
 /// The folder of the pictures, in that of the report.
@@ -168,7 +168,7 @@ fn write_pictures(
     let mut pictures = Vec::new();
     for (kind, alt, pixels) in wanted {
         let file = format!("{PICTURES}/{}-{kind}.png", file_stem(&case.id));
-        write_png(folder.join(&file), width, height, &pixels)?;
+        write_small_png(folder.join(&file), width, height, &pixels)?;
         pictures.push(Picture { file, width, height, caption: alt.clone(), alt });
     }
     Ok(pictures)

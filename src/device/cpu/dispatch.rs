@@ -311,7 +311,9 @@ impl<const K: usize> Pixels<K> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::lanes::Floats;
     use super::*;
+    use crate::math::{max2, min2};
 
     #[test]
     fn the_z_curve_goes_through_blocks_before_it_leaves_them() {
@@ -322,5 +324,37 @@ mod tests {
         let mut block: Vec<u32> = (0..64).map(|i| at(136 + i % 8, 4096 + i / 8)).collect();
         block.sort_unstable();
         assert!(block.windows(2).all(|pair| pair[0] + 1 == pair[1]));
+    }
+
+    /// The bits of the lesser and of the greater of each pair, lane by lane.
+    struct Extremes<'a>(&'a [(f32, f32)]);
+
+    impl Work for Extremes<'_> {
+        type Output = Vec<(u32, u32)>;
+
+        fn run<L: Lanes, const K: usize>(self, l: L) -> Self::Output {
+            self.0
+                .iter()
+                .flat_map(|&(a, b)| {
+                    // Other values in the other lanes, so that a lane that takes its neighbour's is seen.
+                    let (mut first, mut second) = ([7.0; MOST_LANES], [8.0; MOST_LANES]);
+                    (first[L::COUNT - 1], second[L::COUNT - 1]) = (a, b);
+                    let (a, b) = (Floats::from_array(l, &first), Floats::from_array(l, &second));
+                    let (lesser, greater) = (a.min2(b).to_array(), a.max2(b).to_array());
+                    [0, L::COUNT - 1].map(|lane| (lesser[lane].to_bits(), greater[lane].to_bits()))
+                })
+                .collect()
+        }
+    }
+
+    #[test]
+    fn extremes_of_the_engine_are_those_of_the_twin_also_of_nan_and_zeros() {
+        let values = [0.0, -0.0, 1.0, -1.0, 1e-40, f32::NAN, -f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX];
+        let pairs: Vec<(f32, f32)> = values.iter().flat_map(|&a| values.map(|b| (a, b))).collect();
+        let bits = |(a, b)| (min2(a, b).to_bits(), max2(a, b).to_bits());
+        let expected: Vec<(u32, u32)> = pairs.iter().flat_map(|&pair| [bits((7.0, 8.0)), bits(pair)]).collect();
+        for width in Width::available() {
+            assert_eq!(width.run(Extremes(&pairs)), Some(expected.clone()), "{width:?}");
+        }
     }
 }

@@ -3,8 +3,8 @@
 //!
 //! [`Floats`], [`Words`] and [`Mask`] hold one value for each lane of [`Lanes`], whose number is that of the instruction set:
 //! 4 (SSE2, NEON), 8 (AVX2), 16 (AVX-512). Every operation rounds as the twin's scalar one does: there is no fused
-//! multiplication, no approximate reciprocal, and [`Floats::min2`] and [`Floats::max2`] are comparisons, so that NaN and
-//! zeros go the same way on every processor.
+//! multiplication, no approximate reciprocal, and [`Floats::min2`] and [`Floats::max2`] are what comparisons give, so that NaN
+//! and zeros go the same way on every processor.
 //!
 //! All functions here and above are `inline(always)`: a function that is not inlined into the one that enables the
 //! instructions would give the right values, many times slower.
@@ -29,6 +29,10 @@ pub trait Lanes: Simd {
 }
 
 impl<S: Simd> Lanes for S {}
+
+/// x86's own minimum and maximum give the second value where the two do not compare, zeros among them, as `a < b ? a : b`
+/// does. Those of other processors look at NaN and at the signs of zeros.
+const EXTREMES_COMPARE: bool = cfg!(target_arch = "x86_64");
 
 /// A value for each lane in an array, of which the first [`Lanes::COUNT`] count.
 pub type Array<T> = [T; MOST_LANES];
@@ -117,13 +121,13 @@ impl<L: Lanes> Floats<L> {
     /// The lesser of two values; `other` where they do not compare ([`crate::math::min2`]).
     #[inline(always)]
     pub fn min2(self, other: Self) -> Self {
-        self.lt(other).select(self, other)
+        if EXTREMES_COMPARE { Floats(self.0.min(other.0)) } else { self.lt(other).select(self, other) }
     }
 
     /// The greater of two values; `other` where they do not compare ([`crate::math::max2`]).
     #[inline(always)]
     pub fn max2(self, other: Self) -> Self {
-        self.gt(other).select(self, other)
+        if EXTREMES_COMPARE { Floats(self.0.max(other.0)) } else { self.gt(other).select(self, other) }
     }
 
     #[inline(always)]

@@ -66,16 +66,16 @@ struct AxisCost {
 }
 
 impl AxisCost {
-    fn new(cell: &Cell, axis: usize, costs: &Costs) -> Self {
+    /// `half_area` of the cell.
+    fn new(cell: &Cell, half_area: f64, axis: usize, costs: &Costs) -> Self {
         let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
         let (du, dv) = (cell.hi[u] as f64 - cell.lo[u] as f64, cell.hi[v] as f64 - cell.lo[v] as f64);
-        let area = cell.half_area();
         AxisCost {
             costs: *costs,
             lo: cell.lo[axis],
             hi: cell.hi[axis],
-            section: (du * dv / area) as f32,
-            slope: ((du + dv) / area) as f32,
+            section: (du * dv / half_area) as f32,
+            slope: ((du + dv) / half_area) as f32,
         }
     }
 
@@ -189,7 +189,8 @@ pub(super) fn best_split(primitives: &[Primitive], cell: &Cell, costs: &Costs, s
     if leaf_cost <= costs.traversal * costs.empty_factor {
         return None;
     }
-    let axes = [0, 1, 2].map(|axis| AxisCost::new(cell, axis, costs));
+    let half_area = cell.half_area();
+    let axes = [0, 1, 2].map(|axis| AxisCost::new(cell, half_area, axis, costs));
     let mut best = Best { split: None, cost: leaf_cost };
     match primitives.len() {
         0..=SMALL => search_small(primitives, &axes, &mut best),
@@ -199,23 +200,36 @@ pub(super) fn best_split(primitives: &[Primitive], cell: &Cell, costs: &Costs, s
 }
 
 /// Counts every candidate against every primitive, on all axes; a block of candidates at a time, in arrays of fixed
-/// size and without branches, so that the compiler does it in vectors.
+/// size and without branches, so that the compiler does it in vectors. Ends on the cell's own sides, of which small cells
+/// have many, are no candidates and are counted at once.
 fn search_small(primitives: &[Primitive], axes: &[AxisCost; 3], best: &mut Best) {
     let count = primitives.len().min(SMALL);
     for (axis, axis_cost) in axes.iter().enumerate() {
         let (mut lows, mut highs) = ([0.0; SMALL], [0.0; SMALL]);
+        let (mut low_count, mut high_count) = (0, 0);
+        // Written always and kept if wanted: no branch that depends on the data.
+        for p in &primitives[..count] {
+            lows[low_count % SMALL] = p.lo[axis];
+            low_count += (p.lo[axis] > axis_cost.lo) as usize;
+            highs[high_count % SMALL] = p.hi[axis];
+            high_count += (p.hi[axis] < axis_cost.hi) as usize;
+        }
+        let (lows, highs) = (&lows[..low_count], &highs[..high_count]);
         // What follows the last candidate lies in no cell.
         let mut positions = [f32::INFINITY; 2 * SMALL];
-        for (i, p) in primitives[..count].iter().enumerate() {
-            (lows[i], highs[i]) = (p.lo[axis], p.hi[axis]);
-            (positions[i], positions[count + i]) = (p.lo[axis], p.hi[axis]);
-        }
-        let blocks = (2 * count).div_ceil(BLOCK);
+        positions[..low_count].copy_from_slice(lows);
+        positions[low_count..low_count + high_count].copy_from_slice(highs);
+        let blocks = (low_count + high_count).div_ceil(BLOCK);
+        let (below, above) = ((count - low_count) as i32, (count - high_count) as i32);
         for block in positions.as_chunks::<BLOCK>().0[..blocks].iter() {
-            let (mut lower, mut upper) = ([0i32; BLOCK], [0i32; BLOCK]);
-            for (&lo, &hi) in lows[..count].iter().zip(&highs[..count]) {
+            let (mut lower, mut upper) = ([below; BLOCK], [above; BLOCK]);
+            for &lo in lows {
                 for k in 0..BLOCK {
                     lower[k] += (lo < block[k]) as i32;
+                }
+            }
+            for &hi in highs {
+                for k in 0..BLOCK {
                     upper[k] += (hi > block[k]) as i32;
                 }
             }
@@ -286,14 +300,7 @@ fn from_sort_key(key: i32) -> f32 {
 
 fn search_binned(primitives: &[Primitive], axes: &[AxisCost; 3], best: &mut Best, scratch: &mut Scratch) {
     let bins = bins_for(primitives.len());
-    let (mut lo, mut hi) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
-    for p in primitives {
-        for a in 0..3 {
-            lo[a] = min2(p.lo[a], lo[a]);
-            hi[a] = max2(p.hi[a], hi[a]);
-        }
-    }
-    let binnings = [0, 1, 2].map(|a| Binning::new(lo[a], hi[a], bins));
+    let binnings = [0, 1, 2].map(|a| Binning::new(axes[a].lo, axes[a].hi, bins));
     for axis in &mut scratch.axes {
         axis.starts[..bins].fill(0);
         axis.ends[..bins].fill(0);
@@ -385,7 +392,7 @@ mod tests {
     fn full_sweep(primitives: &[Primitive], cell: &Cell) -> Option<Split> {
         let mut best = Best { split: None, cost: COSTS.intersection * primitives.len() as f32 };
         for axis in 0..3 {
-            let axis_cost = AxisCost::new(cell, axis, &COSTS);
+            let axis_cost = AxisCost::new(cell, cell.half_area(), axis, &COSTS);
             let mut positions: Vec<f32> = primitives.iter().flat_map(|p| [p.lo[axis], p.hi[axis]]).collect();
             positions.sort_by(f32::total_cmp);
             positions.dedup();
