@@ -10,8 +10,7 @@ use rarefy::internal::device::executor::Executor;
 use rarefy::internal::device::stage::LAUNCHES;
 use rarefy::internal::method::options::{GcolSpace, Interpolation, Method, RenderOptions};
 use rarefy::internal::prepare::Shading;
-use rarefy::internal::scene::Camera;
-use rarefy::internal::scene::builtin;
+use rarefy::internal::scene::{Camera, Scene, Surface, builtin};
 use rarefy_host_tests::fixtures::{Random, blocks, combinations, full, sized, sweeps, with};
 use rarefy_host_tests::frames::{Prepared, compare, twin};
 
@@ -115,6 +114,43 @@ fn views_from_anywhere_equal_the_twin() {
             for mut engine in engines() {
                 compare(&prepared, &mut engine, [(options.clone(), false), (full(&options), false)]);
             }
+        }
+    }
+}
+
+/// Eyes on triangles: whether a ray meets the surface that it starts on is a matter of the bound on the plane's error.
+#[test]
+fn eyes_on_surfaces_equal_the_twin() {
+    let mut random = Random::new(5);
+    for name in ["zoo", "mirror-room"] {
+        let mut prepared = Prepared::named(name);
+        let given = prepared.scene.view().clone();
+        let parts = prepared.scene.clone().into_parts();
+        for round in 0..30 {
+            let corners = parts.triangles[random.below(parts.triangles.len())].map(|i| parts.positions[i as usize]);
+            let eye = (corners[0] + corners[1] + corners[2]) / 3.0;
+            let camera = Camera { eye, look_at: eye + random.direction(), up: random.direction(), fov_y_degrees: 90.0 };
+            prepared.scene.set_view(rarefy::View { camera, ..given.clone() }).unwrap();
+            let options = RenderOptions { method: blocks([2, 4][round % 2]), ..sized(33, 25) };
+            for mut engine in engines() {
+                compare(&prepared, &mut engine, [(options.clone(), false), (full(&options), false)]);
+            }
+        }
+    }
+}
+
+/// What is seen in a mirror that has a texture of its own is not kept with it.
+#[test]
+fn a_textured_mirror_equals_the_twin() {
+    let mut parts = Prepared::named("window").scene.into_parts();
+    for material in parts.materials.iter_mut().filter(|material| material.surface == Surface::Mirror) {
+        material.diffuse_texture = Some(0);
+    }
+    let prepared = Prepared::new(Scene::new(parts).unwrap(), Shading::Full);
+    for mut engine in engines() {
+        for block in [2, 4] {
+            let options = RenderOptions { method: blocks(block), ..sized(64, 48) };
+            compare(&prepared, &mut engine, [(options.clone(), false), (full(&options), false)]);
         }
     }
 }

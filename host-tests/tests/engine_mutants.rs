@@ -112,7 +112,7 @@ fn copy(from: &Path, to: &Path) {
     std::fs::create_dir_all(to).unwrap();
     for entry in std::fs::read_dir(from).unwrap() {
         let name = entry.unwrap().file_name();
-        if !name.to_str().unwrap().starts_with("target") {
+        if name != "target" {
             copy(&from.join(&name), &to.join(&name));
         }
     }
@@ -121,7 +121,7 @@ fn copy(from: &Path, to: &Path) {
 /// The project with all rows in it.
 fn mutated_project(root: &Path) -> tempfile::TempDir {
     let project = tempfile::tempdir().unwrap();
-    for part in ["Cargo.toml", "Cargo.lock", "src", "kernels", "scenes", "android", "host-tests"] {
+    for part in ["Cargo.toml", "Cargo.lock", "src", "kernels", "scenes", "android", "fuzz", "host-tests"] {
         copy(&root.join(part), &project.path().join(part));
     }
     let engine = project.path().join("src/device/cpu");
@@ -130,10 +130,8 @@ fn mutated_project(root: &Path) -> tempfile::TempDir {
         let text = std::fs::read_to_string(&path).unwrap();
         let given = format!("{}{}", row.before, row.expression);
         assert_eq!(text.matches(&given).count(), 1, "{}: {given}", row.file);
-        let either = format!(
-            "{}(if crate::device::cpu::is_mutant({i}) {{ {} }} else {{ {} }})",
-            row.before, row.broken, row.expression
-        );
+        let either =
+            format!("{}(if super::is_mutant({i}) {{ {} }} else {{ {} }})", row.before, row.broken, row.expression);
         std::fs::write(&path, text.replace(&given, &either)).unwrap();
     }
     let module = engine.join("mod.rs");
@@ -147,12 +145,42 @@ fn mutated_project(root: &Path) -> tempfile::TempDir {
     project
 }
 
+/// Copies what cargo built of other people's crates to `project`, so that these are not built again. The project's own must
+/// not lie in one folder with those of its copy: cargo tells them apart by where they lie within the project.
+fn copy_dependencies(project: &Path) {
+    let program = std::env::current_exe().unwrap();
+    let built = program.parent().unwrap().parent().unwrap();
+    for part in [".fingerprint", "build", "deps"] {
+        let to = project.join("target/debug").join(part);
+        std::fs::create_dir_all(&to).unwrap();
+        let files = std::fs::read_dir(built.join(part)).unwrap().map(|entry| entry.unwrap().path()).filter(|path| {
+            let is_ours = path.file_name().unwrap().to_str().unwrap().contains("rarefy");
+            let is_library =
+                path.extension().is_some_and(|e| ["rlib", "rmeta", "so", "d"].iter().any(|&library| e == library));
+            !is_ours && (part != "deps" || is_library)
+        });
+        let files: Vec<PathBuf> = files.collect();
+        for some in files.chunks(200) {
+            // With their times, by which cargo tells what is new.
+            assert!(Command::new("cp").arg("-a").args(some).arg(&to).status().unwrap().success());
+        }
+    }
+}
+
 /// The test of the engine, built from `project`.
-fn build(project: &Path, root: &Path) -> PathBuf {
-    // With the crates that the project's own tests were built with.
+fn build(project: &Path) -> PathBuf {
+    copy_dependencies(project);
     let output = Command::new(env!("CARGO"))
-        .args(["test", "--workspace", "--test", "cpu_engine", "--no-run", "--message-format", "json", "--target-dir"])
-        .arg(root.join("target"))
+        .args([
+            "test",
+            "--workspace",
+            "--test",
+            "cpu_engine",
+            "--no-run",
+            "--message-format",
+            "json-render-diagnostics",
+        ])
+        .args(["--target-dir", "target"])
         .current_dir(project)
         .output()
         .unwrap();
@@ -170,10 +198,11 @@ fn build(project: &Path, root: &Path) -> PathBuf {
 fn the_comparison_with_the_twin_sees_every_broken_expression() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").canonicalize().unwrap();
     let project = mutated_project(&root);
-    let program = build(project.path(), &root);
+    let program = build(project.path());
+    // As `cargo test` runs it.
     let passes = |mutant: Option<usize>| {
         let mut command = Command::new(&program);
-        command.current_dir(root.join("host-tests")).env_remove(VARIABLE);
+        command.current_dir(project.path().join("host-tests")).env_remove(VARIABLE);
         if let Some(number) = mutant {
             command.env(VARIABLE, number.to_string());
         }
